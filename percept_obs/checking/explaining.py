@@ -63,7 +63,7 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
         return Explanation(found, differences, wrong, steps, (), whole, bracket(found, search) if lacks else None)
     found = search.pair()
     apart = leaves_apart(found[0].before, found[0].after) if found and found[0].kind == "replaced" else []
-    if not found or len(apart) > 2:
+    if (not found and line.kind == VALUE) or len(apart) > 2:
         whole = "there are more than two slips, or a larger one"
     if len(apart) == 2 and all(is_symbol(side) for pair in apart for side in pair):
         found = tuple(replace(found[0], kind="letter", before=a, after=b, term=found[0].before) for a, b in apart)

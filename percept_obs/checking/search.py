@@ -128,7 +128,7 @@ class Search:
         # a term that is there only once all is multiplied out is named last
         written = [Slip("missing", sp.S.Zero, t, (), t, t) for t in sp.Add.make_args(self.line.formula)]
         late = [slip for slip in ways if slip.kind == "missing" and slip not in written]
-        if self.line.kind == VALUE and len(late) == len(ways):
+        if self.line.kind != ZEROS and len(late) == len(ways):
             ways = [*self.by_ratio(), *(ways or [*self.missing_inside(), *self.in_its_place()])]
         return min(ways, key=lambda s: (s in late, ORDER.index(s.kind), len(s.path)), default=None)
 
@@ -203,6 +203,11 @@ class Search:
         if not path or not close(self.values(changed), self.values(self.line.formula)):
             return
         kind, lost = "replaced", sp.Add.make_args(true - mine)
+        quotient = true / mine if mine != 0 else true
+        if quotient == -1:
+            yield Slip("sign", mine, true, path, mine, changed)
+        elif quotient.is_Symbol:
+            yield Slip("left-out factor", sp.S.One, quotient, path, mine, changed)
         if len(lost) == 2:
             known = {t.as_coeff_Mul()[1] for t in sp.Add.make_args(mine)}
             lacking, extra = sorted(lost, key=lambda t: t.as_coeff_Mul()[1] in known)
@@ -227,10 +232,10 @@ class Search:
         squares = [(f**2, values**2) for f, values in factors if f.is_Symbol]
         with np.errstate(all="ignore"):
             # plainer ones last, for they take the place of the others
-            pairs = [(a, x, b, y) for a, x in reversed(factors) for b, y in reversed(factors) if a != b]
+            pairs = [(a, x, b, y) for a, x in reversed(factors) for b, y in reversed(factors) if _are_mistaken(a, b)]
             pairs.sort(key=lambda pair: sp.S.One in (pair[0], pair[2]))
             return {_rounded(x): (a, sp.S.One) for a, x in squares} | {
-                _rounded(c * x / y): (c * a, b) for a, x, b, y in pairs for c in (-1, 1) if not (a.is_Add and b.is_Add)
+                _rounded(c * x / y): (c * a, b) for a, x, b, y in pairs for c in (-1, 1)
             }
 
     def pair(self) -> tuple[Slip, ...]:
@@ -274,6 +279,11 @@ class Search:
                             _named(replace(slip, path=(*start, *path), term=slip.term if slip.path else term))
                             for slip, path in zip((first, second), paths, strict=True)
                         )
+
+
+def _are_mistaken(a: sp.Expr, b: sp.Expr) -> bool:
+    """Return True for two factors that may be mistaken for each other as a whole, and do not differ inside."""
+    return a != b and (a.is_Symbol or b.is_Symbol or a.func != b.func)
 
 
 FUNCTIONS = {sp.sin: sp.cos, sp.cos: sp.sin, sp.sinh: sp.cosh, sp.cosh: sp.sinh}
