@@ -9,11 +9,10 @@ import io
 import shutil
 import tempfile
 from collections.abc import Callable, Mapping
-from importlib import resources
+from importlib import metadata, resources
 from pathlib import Path
 from typing import Any
 
-from percept_obs import __version__
 from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED, Ledger
 from percept_obs.site import front_ends
@@ -40,7 +39,7 @@ SCRIPTS = "".join(f'<script defer src="../_static/{name}"></script>' for name in
 
 SETTINGS = {
     "project": "percept_obs",
-    "release": __version__,
+    "release": metadata.version("percept_obs"),
     "language": "en",
     "extensions": ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "percept_obs.site.extension"],
     "html_title": "percept_obs",
