@@ -52,3 +52,12 @@ def test_a_part_of_a_form_under_the_name_of_another_part_is_refused():
     with pytest.raises(ValueError, match="the line g is none of those asked for: w"):
         check("g = [a12 - a32 y1, b1 - b3 y1]", ONE.w)
     assert check("g = [a12 - a32 y1, b1 - b3 y1]", ONE).right is False
+
+
+def test_a_number_for_a_column_is_refused_with_the_size_of_the_column():
+    with pytest.raises(ValueError, match="w has 2 entries; write it as a column"):
+        check("w = b1 - b3 y1", ONE)
+
+
+def test_a_wrong_line_without_values_is_explained_too():
+    assert "this has no values that can be compared" in str(check("y1' = exp(exp(exp(exp(exp(y1)))))", AFFINE).hint(3))

@@ -22,6 +22,8 @@ MOST_TERMS = 12
 """Wrong terms that are listed."""
 SECONDS = 1.2
 """Time limit of the search for slips; what was found by then is reported."""
+NO_VALUES = "this has no values that can be compared; look for a division by zero, or for powers of powers"
+MANY = "there are more than two slips, or a larger one"
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
     line = target.lines[row]
     search = Search(mine, line, frozenset(target.letters.values()), time.thread_time() + min(SECONDS, 0.6 * left()))
     if not search.places:
-        return Explanation()
+        return Explanation(whole=NO_VALUES)
     if whole := elsewhere(search, row, target):
         return Explanation(whole=whole)
     found, whole = _found(search, target)
@@ -63,8 +65,8 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
         return Explanation(found, differences, wrong, steps, (), whole, bracket(found, search) if lacks else None)
     found = search.pair()
     apart = leaves_apart(found[0].before, found[0].after) if found and found[0].kind == "replaced" else []
-    if (not found and line.kind == VALUE) or len(apart) > 2:
-        whole = "there are more than two slips, or a larger one"
+    if not found or len(apart) > 2:
+        whole = MANY
     if len(apart) == 2 and all(is_symbol(side) for pair in apart for side in pair):
         found = tuple(replace(found[0], kind="letter", before=a, after=b, term=found[0].before) for a, b in apart)
     return Explanation(found, differences, wrong, steps, tuple(_apart(search, found, row, target)), whole)

@@ -160,6 +160,10 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
                 formula = target.letters[name] - formula
         elif name in target.blocks and len(target.blocks[name]) == 1:
             (row,) = target.blocks[name]
+        elif name in target.blocks:
+            raise ValueError(
+                f"{name} has {len(target.blocks[name])} entries; write it as a column, {name} = [..., ...]"
+            )
         elif len(unnamed) == len(nameless):
             row, start = nameless[start], start + 1
         else:
