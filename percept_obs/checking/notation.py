@@ -124,7 +124,7 @@ class Notation:
             middle = (token.start_pos or 0) + len(whole)
             ends = Token("NUMBER", part, middle + 1, end_pos=middle + 1 + len(part))
             return [token.update(type="NUMBER", value=whole), Token("COMMA", ",", middle, end_pos=middle + 1), ends]
-        if len(part) == 3 and whole != "0" and "{" not in token:
+        if len(part) == 3 and part.isdigit() and whole != "0" and "{" not in token:
             self.refuse(two_meanings((whole + part, f"{whole}.{part}"), "type it without a comma"), token)
         return [token.update(type="NUMBER", value=f"{whole}.{part}")]
 

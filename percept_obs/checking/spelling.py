@@ -25,6 +25,8 @@ REPLACED = {
     **dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789", strict=True)),
     **dict(zip("−–·⋅×∗′’⟨⟩≠≤≥", ("-", "-", "*", "*", "*", "*", "'", "'", "(", ")", "!=", "<=", ">="), strict=True)),
     **dict(zip("½¼¾⅓⅔", ("(1/2)", "(1/4)", "(3/4)", "(1/3)", "(2/3)"), strict=True)),
+    **dict.fromkeys("→⇒⟹∴", r"\implies "),
+    "˙": "'",
     **dict(zip("‖√∑≡≔≜ᵀ″", ("||", r"\sqrt", r"\sum", r"\equiv", ":=", r"\triangleq", r"^{\top}", "''"), strict=True)),
     **dict.fromkeys("\u2009\u202f\u00a0\u2002\u2003\u2061\u2062", " "),
 }
@@ -137,13 +139,18 @@ def _outside(text: str, inside: list[tuple[int, int]]) -> list[str]:
 def _line(line: str) -> str:
     """Return a line without words, numbers and marks around its formulas."""
     line = _terminal("COMMENT").sub(lambda found: " " * len(found[0]), line)
-    line = re.sub(r"^\s*>|^\s*\*\*(?=\S)|(?<=\S)\*{1,3}\s*$|^\s*\*(?=[A-Za-z\\])", lambda f: " " * len(f[0]), line)
+    line = re.sub(
+        r"^\s*>|^\s*\*\*(?=\S)|^\s*__(?=\S)|(?<=\S)__\s*$|(?<=\S)\*{1,3}\s*$|^\s*\*(?=[A-Za-z\\])",
+        lambda f: " " * len(f[0]),
+        line,
+    )
     start = len(line) - len(line.lstrip())
     if numbered := _terminal("NUMBERED").match(line, start):
         line = " " * numbered.end() + line[numbered.end() :]
     line = re.sub(
         r"(?<=\s\s|.,|ad)\s*\((\d{1,2}[a-z]?)\)\s*[.,]?\s*$", lambda f: " " * len(f[0]), line
     )  # (4) at the end, behind blanks or \quad
+    line = re.sub(r"\(((?:with|where)\s.*)\)(\s*)$", r" \1 \2", line)
     if _NAMED_BY_COLON.fullmatch(line):
         line = line.replace(":", "=", 1)
         if line.lstrip().startswith("{"):
@@ -220,6 +227,7 @@ def rate_of(token: str) -> str:
         found = _CALLS.fullmatch(token)
         assert found
         inner, by = next(part for part in found.groups() if part), "t"
+    inner = inner.strip().removeprefix("(").removesuffix(")") if inner.strip().startswith("(") else inner
     name = name_of(re.sub(r"\s*\([^()]*\)\s*$", "", inner).strip())
     return key(f"{name}dot") if by == "t" else f"d{name}"
 

@@ -20,7 +20,7 @@ _QUOTIENTS = {
 FUNCTIONS: Functions = {
     **{f.__name__: f for f in (*_NAMED, sp.sqrt, sp.sign)},
     **{"abs": sp.Abs, "sgn": sp.sign, "ln": sp.log, "arctan": sp.atan, "arcsin": sp.asin, "arccos": sp.acos},
-    **{"Abs": sp.Abs, **_QUOTIENTS},
+    **{"Abs": sp.Abs, "fabs": sp.Abs, **_QUOTIENTS},
 }
 WRAPPERS = {"Matrix", "ImmutableMatrix", "array", "expand", "simplify", "factor"}
 """Calls that leave a formula as it is."""

@@ -325,6 +325,10 @@ class Words(Notation):
             return [token.update(value=self._spelled(key(part))) for part in ways[0]]
         if ways:
             self.refuse(f'"{name}" can be read as {" or ".join(map(" ".join, ways))}; write * between', token)
+        called = [each for each in FUNCTIONS if name.endswith(each) and len(self._ways(name.removesuffix(each))) == 1]
+        if after == "LPAR" and len(called) == 1:  # ksin(y1)
+            (way,) = self._ways(name.removesuffix(called[0]))
+            return [*(token.update(value=part) for part in way), token.update(type="FUNCTION", value=called[0])]
         near = difflib.get_close_matches(name, self.letters, 1, 0.5)
         known = ", ".join(sorted(str(letter) for letter in self.letters.values() if letter.is_Symbol)[:40])
         guess = f', did you mean "{self.letters[near[0]]}"? There are' if near else "; there are"
