@@ -195,9 +195,10 @@ def check(mine: Any, target: Any) -> Review:
     Parameters
     ----------
     mine : str, sympy expression, matrix or relation, or a list or a mapping of them
-        Text as one types it, "y1' = a13 + (a11 - a33) y1 + ...", with ``^`` or ``**``, or LaTeX as the package prints
-        it.  Letters are matched by name.  One line or several; a line with a new letter on its left, "q = a31 y1",
-        gives that letter a meaning for those after it.  In a mapping, 5 stands for the fifth step of a derivation.
+        Text as one types it, "y1' = a13 + (a11 - a33) y1 + ...", with ``^`` or ``**``, or LaTeX as papers and the
+        package print it, also in a sentence.  Letters are matched by name.  One line or several; a line with a new
+        letter on its left, "where q = a31 y1", gives that letter a meaning.  In a mapping, 5 stands for the fifth step
+        of a derivation.
     target : anything that the package derives
         A system or a form (their rates, and by name "Z' = ...", "w = ...", "phi = ...", "g = ..."), an observer (its
         flow, and by name the rate of its error "e1' = ...", its Jacobian "F = ...", and for a "V = ..." of one's own

@@ -134,7 +134,9 @@ class Words(Notation):
         numbers = self.letters.get(self._spelled(letter))
         of_numbers = isinstance(numbers, sp.Expr) and not isinstance(numbers, sp.MatrixExpr)  # b3(y4) is a mistake
         if top_level(inner, 0, "COMMA") is None:
-            timed = inner[0].type == "NAME" and self._only_times(inner[2:-1]) and inner[1].type == "LPAR"
+            timed = (
+                len(inner) > 3 and inner[0].type == "NAME" and self._only_times(inner[2:-1]) and inner[1].type == "LPAR"
+            )
             return letter if timed or (unknown == words and words and not of_numbers) else ""
         if of_numbers and not unknown:
             return ""
