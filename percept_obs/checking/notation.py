@@ -175,10 +175,11 @@ class Notation:
             if tokens[start].type != "INTEGRAL":
                 continue
             partner = partners(tokens)
-            lower = partner.get(start + 1, start + 1) + 1
+            last = len(tokens) - 1
+            lower = min(partner.get(start + 1, start + 1) + 1, last)
             if tokens[lower].type != "_POWER":
                 self.refuse("an integral has a lower and an upper bound, \\int_{0}^{t} ... d tau", tokens[start])
-            upper = partner.get(lower + 1, lower + 1) + 1
+            upper = min(partner.get(lower + 1, lower + 1) + 1, last)
             k = upper
             while tokens[k].type not in ("END", "EQUAL", "RELATION", *CLOSING) and not differential(tokens, k):
                 k = partner.get(k, k) + 1

@@ -140,11 +140,10 @@ class Words(Notation):
             return letter if timed or (unknown == words and words and not of_numbers) else ""
         if of_numbers and not unknown:
             return ""
-        known = first.setdefault(letter, words)
-        changed = next((word for word in words if word not in known), "")
         if any("hat" in word for word in words) and key(f"{letter}hat") in self.known:
             return key(f"{letter}hat")
-        return letter + changed.rstrip("0123456789")
+        known = first.setdefault(letter, words)
+        return letter + next((word for word in words if word not in known), "").rstrip("0123456789")
 
     def _only_times(self, inner: Sequence[Token]) -> bool:
         """Return True for t, t + tau, s: times that are no letters of the target."""
