@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 from percept_obs.compile import integrator
 from percept_obs.figures import look
-from percept_obs.labs.desk import settings as desk
+from percept_obs.labs.desk import texts as desk
 from percept_obs.labs.observer import texts as observer
 from percept_obs.labs.points import texts as points
 from percept_obs.labs.shared.printed import FRONT, Parts, file_of, packed, unpacked

@@ -17,9 +17,9 @@ from percept_obs.checking.matching import Judged, judged
 from percept_obs.checking.reading import Reading
 from percept_obs.checking.review import CANNOT_BE_TOLD
 from percept_obs.labs.desk.arrows import ends_of, grown_of, picture_of
-from percept_obs.labs.desk.sheets import Sheet, name_of
+from percept_obs.labs.desk.sheets import Sheet, label_of, name_of
 from percept_obs.labs.desk.typed import typed_markup
-from percept_obs.labs.shared.markup import dotted, markup
+from percept_obs.labs.shared.markup import markup
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.system.perspective import PerspectiveSystem
 
@@ -34,6 +34,25 @@ MARKS = {
     Verdict.CARRIED: "carried",
     Verdict.CANNOT_TELL: "unknown",
 }
+
+
+SAID = {
+    "begun": "Right so far: a term is missing.",
+    "begun many": "Right so far: {count} terms are missing.",
+    "wrong": "Not right yet.",
+    "wrong one": "1 of {asked} lines is not right yet.",
+    "wrong many": "{count} of {asked} lines are not right yet.",
+    "carried": "Right from there on{notes}.",
+    "follows": "this follows from your “{reason}”, which is wrong",
+    "unknown": CANNOT_BE_TOLD,
+    "right": "Right{notes}.",
+    "right so far": "Right so far, {count} of {asked} lines{notes}.",
+    "alone": "Which slip it is only Python can say: open the desk in a notebook.",
+    "unknown system": "Only Python derives this system: open the desk in a notebook, or clear the name.",
+    "one formula": "one formula is asked for here, without other equations or relations",
+    "other line": "this is the line for {name}; type its right side only",
+}
+"""Words of a verdict, which the page says as well."""
 
 
 @dataclass(frozen=True)
@@ -63,9 +82,9 @@ def entry_of(sheet: Sheet, row: int, text: str) -> Entry:
         r.formula for r in readings if isinstance(r.formula, sp.Expr) and not isinstance(r.formula, sp.MatrixBase)
     ]
     if len(readings) != 1 or not formulas:
-        return Entry(shown, None, "one formula is asked for here, without other equations or relations", len(text))
+        return Entry(shown, None, SAID["one formula"], len(text))
     if names - {"", line.key}:
-        return Entry(shown, None, f"this is the line for {line.name}; type its right side only")
+        return Entry(shown, None, SAID["other line"].format(name=line.name))
     return Entry(shown, Reading(f"line{row}", formulas[0]))
 
 
@@ -114,18 +133,17 @@ def summary_of(sheet: Sheet, review: Review, asked: int) -> str:
         return ""
     missing = [missing_in(sheet, line) for line in review.lines if line.verdict == Verdict.WRONG]
     if missing and all(missing):
-        terms = "a term is" if sum(missing) == 1 else f"{sum(missing)} terms are"
-        return f"Right so far: {terms} missing."
+        return SAID["begun" if sum(missing) == 1 else "begun many"].format(count=sum(missing))
     if wrong:
-        are = "is" if wrong == 1 else "are"
-        return "Not right yet." if count == 1 else f"{wrong} of {count} lines {are} not right yet."
+        which = "wrong" if count == 1 else "wrong one" if wrong == 1 else "wrong many"
+        return SAID[which].format(count=wrong, asked=count)
     notes = sorted({line.note for line in review.lines if line.note})
     if any(line.verdict == Verdict.CARRIED for line in review.lines):
-        return f"Right from there on: {'; '.join(notes)}."
+        return SAID["carried"].format(notes=f": {'; '.join(notes)}")
     if review.right is None:
-        return CANNOT_BE_TOLD
-    begun = "Right" if count == asked else f"Right so far, {count} of {asked} lines"
-    return "; ".join([begun, *notes]) + "."
+        return SAID["unknown"]
+    told = "".join(f"; {note}" for note in notes)
+    return SAID["right" if count == asked else "right so far"].format(count=count, asked=asked, notes=told)
 
 
 def missing_in(sheet: Sheet, line: Judged) -> int:
@@ -204,13 +222,18 @@ def answer_to(sheet: Sheet, settings: Settings, system: PerspectiveSystem) -> Se
     reasons = [sheet.derivation[number - 1].reason.rstrip(":") for number in steps]
     return {
         "given": sheet.given,
-        "letters": sheet.letters,
+        "letters": list(map(markup, sheet.letters)),
         "steps": [
             {"reason": reasons[k - 1], "name": name_of(reasons[k - 1]), **state_of(sheet, k, texts)} for k in steps
         ],
         "step": step,
         "lines": [
-            {"key": keys[row], "name": names[row][1], "label": _label(names[row][1]), **_line(sheet, row, texts, found)}
+            {
+                "key": keys[row],
+                "name": names[row][1],
+                "label": label_of(names[row][1]),
+                **_line(sheet, row, texts, found),
+            }
             for row in rows
         ],
         "words": summary_of(sheet, review, len(rows)),
@@ -250,11 +273,3 @@ def _line(sheet: Sheet, row: int, texts: Mapping[int, str], hinted: Mapping[int,
     if entry.reading is None:
         return {"markup": entry.markup, "mark": "", "told": [], "refusal": entry.refusal, "position": entry.position}
     return {"markup": entry.markup, **hinted[row]}
-
-
-def _label(name: str) -> str:
-    """Return the name of a line as MathML; empty for words."""
-    stem = name.removesuffix("'")
-    if " " in name:
-        return ""
-    return dotted(sp.Symbol(stem)) if stem != name else markup(sp.Symbol(name))

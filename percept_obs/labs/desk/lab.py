@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from os import PathLike
 from typing import Any
+
+import traitlets
 
 from percept_obs.labs.desk.answers import answer_to
 from percept_obs.labs.desk.settings import EXAMPLE, SCHEMA
-from percept_obs.labs.desk.sheets import Sheet, sheet_of
+from percept_obs.labs.desk.sheets import PARTS, Sheet, sheet_of
 from percept_obs.labs.desk.systems import system_of, system_of_student
+from percept_obs.labs.desk.texts import sheet_for_the_page, sheet_name
 from percept_obs.labs.shared.lab import Lab
 from percept_obs.labs.shared.printed import part
 from percept_obs.labs.shared.schema import Settings
@@ -42,7 +46,7 @@ class DerivationDesk(Lab):
 
     schema = SCHEMA
     title = "The derivation desk"
-    works_alone = False
+    sheets = traitlets.Dict(help="Sheets of a system that the package does not print, by their names.").tag(sync=True)
 
     def __init__(self, system: PerspectiveSystem | None = None, /, **settings: Any) -> None:
         if system is not None and not isinstance(system, PerspectiveSystem):
@@ -92,6 +96,25 @@ class DerivationDesk(Lab):
         """
         return sheet_of(*self.system(), self.settings["observer"], self.settings["part"])
 
+    def save(self, file: str | PathLike[str]) -> None:
+        """Write the desk into a page of its own, which reads and judges lines by itself; see `Lab.save`."""
+        for each in PARTS:
+            self._print(each)
+        super().save(file)
+
+    def _print(self, part: str) -> None:
+        """Print a sheet for the page, unless the package has."""
+        settings = self.settings
+        student = settings["student"].strip()
+        if self._given is None and not student:
+            return
+        whose = "own" if self._given else f"student {student}"
+        name = sheet_name(whose, settings["outputs"], settings["observer"], part)
+        if name not in self.sheets:
+            system, outputs = self.system()
+            found = sheet_for_the_page(system, outputs, settings["observer"], part)
+            self.sheets = {**self.sheets, name: {**found, "outputs": list(outputs)}}
+
     def analyse(self) -> Settings:
         """Return the sheet, and the answer to the lines of the step that is shown."""
         settings = self.settings
@@ -100,6 +123,7 @@ class DerivationDesk(Lab):
         except ValueError as error:
             return {"problem": str(error)}
         system, outputs = self.system()
+        self._print(settings["part"])
         seen = f"{system.motion.name} motion on the {system.surface.name} surface"
         title = f"{seen}, {' and '.join(outputs)} measured"
         return {"title": title, **answer_to(sheet, settings, system)}

@@ -4,8 +4,7 @@ from typing import Any
 
 from percept_obs.labs.desk.answers import HINTS
 from percept_obs.labs.desk.sheets import PARTS
-from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, system_of
-from percept_obs.labs.shared.printed import Parts
+from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS
 from percept_obs.labs.shared.schema import Choice, Entries, Names, Number, Row, Schema, Text
 from percept_obs.labs.shared.surfaces import SURFACES
 
@@ -39,16 +38,3 @@ EXAMPLE: dict[str, Any] = {
     "typed": {"rate 6 y1'": "a13 + (a11 - a33) y1 + a12 y2 - a31 y1^2 - a32 y1 y2 + (b1 + b3 y1) y3"},
 }
 """Settings of a desk that is given none, where they differ: a line with a slip in its last term."""
-
-
-def texts_for_the_page() -> Parts:
-    """Yield the choices that the page shows before Python answers."""
-    yield (
-        "",
-        {
-            "surfaces": {name: system_of("affine", name).output_choices for name in SURFACES},
-            "motions": list(MOTIONS),
-            "observers": {name: make.name for name, make in OBSERVERS.items()},
-            "parts": PARTS,
-        },
-    )

@@ -49,6 +49,14 @@ def name_of(reason: str) -> str:
     return next((name for start, name in NAMES.items() if reason.startswith(start)), reason.partition(",")[0])
 
 
+def label_of(name: str) -> str:
+    """Return the name of a line as MathML; empty for words."""
+    stem = name.removesuffix("'")
+    if " " in name:
+        return ""
+    return dotted(sp.Symbol(stem)) if stem != name else markup(sp.Symbol(name))
+
+
 @dataclass(frozen=True, eq=False)
 class Sheet:
     """A derivation to fill in."""
@@ -65,10 +73,10 @@ class Sheet:
         return replace(self.goal, lines=tuple(lines))
 
     @cached_property
-    def letters(self) -> list[str]:
-        """Letters that occur in the lines, as MathML."""
+    def letters(self) -> list[sp.Symbol]:
+        """Letters that occur in the lines."""
         used = {s for line in self.goal.lines for s in in_letters(line.formula).free_symbols}
-        return [markup(s) for s in sorted(used, key=str)]
+        return sorted(used, key=str)
 
     def rows(self, step: int) -> range:
         """Return the rows of a step, which is counted from 1."""

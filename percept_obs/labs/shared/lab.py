@@ -104,8 +104,6 @@ class Lab(anywidget.AnyWidget):
     title = "A lab"
     blocks: Blocks = MappingProxyType({})
     """Vectors and matrices that may be typed, by their letters."""
-    works_alone = True
-    """True if the page works without Python."""
     from_the_page: tuple[str, ...] = ("asked", "settings", "summary")
     """Traits that the page may set."""
     face = traitlets.Enum(("first", "workbench"), "first", help="What the page opens with.").tag(sync=True)
@@ -212,7 +210,7 @@ class Lab(anywidget.AnyWidget):
         Raises
         ------
         ValueError
-            If the file is a folder, its folder does not exist, or the lab needs Python for all that it shows.
+            If the file is a folder, or its folder does not exist.
 
         Examples
         --------
@@ -227,10 +225,6 @@ class Lab(anywidget.AnyWidget):
         target = Path(file)
         if target.is_dir() or not target.absolute().parent.is_dir():
             raise ValueError(f"cannot write {target}: name a file in a folder that exists, such as lab.html")
-        if not self.works_alone:
-            raise ValueError(
-                "the desk reads formulas in Python, so a page without Python cannot hold it; save a lab of runs"
-            )
         write_whole(target, page_of(self.get_state(), self.title).encode())
 
     def set_state(self, sync_data: dict[str, Any]) -> None:

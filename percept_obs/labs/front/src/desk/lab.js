@@ -7,9 +7,14 @@ import { build } from "./page/layout.js";
 import { Panel, WORDS } from "./page/panel.js";
 import { agrees, MotionPicture } from "./page/picture.js";
 import { Replay } from "./page/replay.js";
+import { answerTo, Sheet as Judge, sheetName } from "./model/answers.js";
 import { Sheet } from "./page/sheet.js";
 
 const DEBOUNCE = 20;
+/** Settings that verdicts and hints are of, and what Python says of them. */
+const SHEET = ["student", "motion", "surface", "outputs", "observer", "part", "step"];
+const JUDGED = [...SHEET, "typed", "hints"];
+const FROM_PYTHON = ["words", "right", "hint", "says", "steps"];
 /** Milliseconds without typing after which a text that may not be complete is judged. */
 const PAUSE = 1000;
 /** Milliseconds after which it is said that Python is at work. */
@@ -40,7 +45,12 @@ export class DeskLab extends LabBase {
     this.replay = new Replay(this);
     this.sheet = new Sheet(this);
     this.panel = new Panel(this);
-    this.answer = { ...widget.get("analysis"), settings: this.settings };
+    /** @type {any} Python's last answer, with the settings that it is of */
+    this.heard = { ...widget.get("analysis"), settings: this.settings };
+    /** True if there is no Python that could say more. */
+    this.alone = !widget.save_changes;
+    this.judges = new WeakMap();
+    this.answer = this.found(this.settings) ?? this.heard;
     this.follow(build(this, place));
     if (this.face === "first") this.replay.follow();
   }
@@ -155,8 +165,22 @@ export class DeskLab extends LabBase {
   }
 
   analysed(answer) {
-    this.answer = answer;
+    this.heard = answer;
+    this.answer = this.found(answer.settings) ?? answer;
     this.schedule();
+  }
+
+  /** What the page finds by itself, and what Python has said of the same lines; null if it does not know the sheet. */
+  found(settings) {
+    const { model, heard, alone } = this;
+    const printed = this.widget.get("sheets")?.[sheetName(settings, model.given)] ??
+      model.sheets[sheetName(settings, model.given)];
+    if (!printed) return alone ? { problem: model.said["unknown system"], settings } : null;
+    if (printed.problem) return { ...printed, settings };
+    if (!this.judges.has(printed)) this.judges.set(printed, new Judge(printed, model.reader, model.said));
+    const own = { ...answerTo(this.judges.get(printed), settings, alone), settings };
+    if (alone || !heard.lines || !JUDGED.every((name) => same(heard.settings[name], settings[name]))) return own;
+    return { ...own, ...Object.fromEntries(FROM_PYTHON.map((name) => [name, heard[name]])), lines: heard.lines };
   }
 
   // What is shown.
@@ -169,11 +193,11 @@ export class DeskLab extends LabBase {
   paint() {
     this.pending = false;
     cancelAnimationFrame(this.frame);
-    const { answer, settings, replay } = this;
+    const { settings, replay } = this;
+    if (this.answer?.settings !== settings) this.answer = this.found(settings) ?? this.answer;
+    const { answer } = this;
     const current = answer?.settings === settings;
-    const sameSheet = ["student", "motion", "surface", "outputs", "observer", "part", "step"].every((name) =>
-      same(answer?.settings[name], settings[name]),
-    );
+    const sameSheet = SHEET.every((name) => same(answer?.settings[name], settings[name]));
     const sameLines = sameSheet && same(answer.settings.typed, settings.typed);
     this.theme ??= themeOf(this.view.root);
     this.shown = answer;
@@ -181,7 +205,8 @@ export class DeskLab extends LabBase {
     this.view.show(answer, sameSheet);
     this.view.steps(this.state);
     if (sameSheet && !answer.problem) this.sheet.show(answer, current);
-    this.watch(current);
+    const silent = this.alone || this.heard.settings === settings;
+    this.watch(current && (silent || answer.right !== false));
     const plain = settings.motion === "affine" && settings.surface === "pinhole" && !settings.student.trim();
     const usual = plain && !this.model.given;
     this.view.marked({ pictured: Boolean(answer?.picture), played: replay.at !== null, usual });
@@ -228,6 +253,7 @@ export class DeskLab extends LabBase {
     if (!picture?.mine.some((value) => value !== null)) return `${answer.words} Hints open one by one.`;
     if (agrees(picture)) return "Here the slip hides: the arrows agree, although a line is wrong.";
     const help = answer.hint ? ", or open a hint" : "";
-    return `Your arrow misses the true one: mend the line${help}.`;
+    const told = this.alone ? ` ${this.model.said.alone}` : "";
+    return `Your arrow misses the true one: mend the line${help}.${told}`;
   }
 }
