@@ -8,7 +8,7 @@ from lab_alone import DRAWN
 from lab_browser import UNFOLD, assert_equals_python, control, state
 from lab_settings import ALL, KEYS
 
-from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
+from percept_obs.labs import observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -129,8 +129,3 @@ def test_a_place_that_cannot_be_written_is_refused(place, tmp_path):
     (tmp_path / "folder").mkdir()
     with pytest.raises(ValueError, match=r"name a file in a folder that exists"):
         points_lab().save(tmp_path / place)
-
-
-def test_the_desk_says_why_it_cannot_be_saved(tmp_path):
-    with pytest.raises(ValueError, match="reads formulas in Python"):
-        derivation_desk().save(tmp_path / "desk.html")
