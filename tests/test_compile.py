@@ -23,7 +23,8 @@ from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH
 from percept_obs.compile.rows import by_row
 from percept_obs.figures import look
-from percept_obs.labs.printing import INTEGRATOR, LOOKS
+from percept_obs.labs.desk import tables
+from percept_obs.labs.printing import INTEGRATOR, LOOKS, READER
 from percept_obs.observers import OBSERVERS, linear_approximation
 from percept_obs.points import kernel as points_kernel
 
@@ -256,7 +257,9 @@ def test_where_nothing_can_be_kept_the_loop_compiles_all_the_same(tmp_path, monk
     assert not place.is_dir()
 
 
-@pytest.mark.parametrize(("file", "printed"), [(INTEGRATOR, integrator.for_the_page), (LOOKS, look.for_the_page)])
+@pytest.mark.parametrize(
+    ("file", "printed"), [(INTEGRATOR, integrator.for_the_page), (LOOKS, look.for_the_page), (READER, tables.reader)]
+)
 def test_the_page_steps_by_the_same_method_and_draws_by_the_same_marks(file, printed):
     there = file.read_text(encoding="utf-8")
     assert there == printed(), "run python -m percept_obs.labs.printing and build the page"

@@ -6,6 +6,7 @@ from types import MappingProxyType
 
 from percept_obs.compile import integrator
 from percept_obs.figures import look
+from percept_obs.labs.desk import tables
 from percept_obs.labs.desk import texts as desk
 from percept_obs.labs.observer import texts as observer
 from percept_obs.labs.points import texts as points
@@ -24,7 +25,9 @@ LABS: Mapping[str, Callable[[], Parts]] = MappingProxyType(
 
 INTEGRATOR = FRONT / "src/common/model/integrator.js"
 LOOKS = FRONT / "src/common/page/looks.js"
-"""The method of the loops, and the marks of all pictures, in the page's sources; from them the bundle is built."""
+READER = FRONT / "src/desk/model/printed.js"
+"""The method of the loops, the marks of all pictures and the reader of formulas, in the page's sources, from which the
+bundle is built."""
 
 
 def changed(kind: str) -> list[str]:
@@ -40,6 +43,7 @@ def main() -> None:
     if INTEGRATOR.parent.exists():
         INTEGRATOR.write_text(integrator.for_the_page(), encoding="utf-8")
         LOOKS.write_text(look.for_the_page(), encoding="utf-8")
+        READER.write_text(tables.reader(), encoding="utf-8")
     for kind, print_texts in LABS.items():
         file = file_of(kind)
         file.write_bytes(packed(print_texts()))

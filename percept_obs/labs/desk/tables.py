@@ -7,32 +7,39 @@ from typing import Any
 from lark.grammar import NonTerminal, Rule, Terminal
 from lark.parsers.lalr_analysis import Shift
 
-from percept_obs.checking import points, reading
+from percept_obs.checking import building, refusing, spelling, words
+from percept_obs.labs.desk.in_javascript import in_javascript
 from percept_obs.labs.shared.printed import Texts
 
 REFUSALS = {
-    "character": "this sign has no meaning in a formula",
-    "word": "this cannot stand here",
-    "end": "the formula ends too early",
-    "empty": "there is no formula",
-    "letter": '"{name}" is no letter here',
-    "ways": '"{name}" can be read in several ways; write * between letters',
-    "line": 'there is no line "{name}" here',
-    "command": r"\{name} is not read",
-    "exponent": "exponents are whole or half numbers, and not large",
-    "divisor": "zero cannot stand below a fraction",
+    "empty": 'there is no formula; type one, such as "y1 + 2 y2"',
+    "twice": '"{name}" is given twice; give each its own letter',
+    "itself": '"{name}" is given by itself; begin with what is known',
+    "rate": '"{name}" stands in this line, and no line gives it; write it in the known letters',
+    "unsolved": "this cannot be solved for {name}; write {name} = ...",
+    "exponent": f"exponents are whole or half numbers up to {building.LARGEST_POWER}",
+    "divisor": "a matrix or zero cannot stand below a fraction",
     "zero": "zero has no such power",
     "below": "after a / it is not clear what is below it; write brackets or *",
     "transpose": "only a matrix has a transpose, A^T",
     "matrix": "a matrix cannot stand here",
-    "large": "this is too long or too large to be compared; there must be a smaller way to write it",
+    "large": "this is too large to be compared; there must be a smaller way to write it",
     "python": "only Python reads this: open the desk in a notebook",
 }
-"""Reasons of the page for what it cannot read; where Python answers, it says more."""
+"""What the page says where it reads a line and no formula comes of it; where Python answers, it says more."""
 
-GREEK = tuple(reading._GREEK.split())
+GREEK = tuple(spelling.GREEK.split())
+_LAYOUT = ("DELIMITER", "PROSE", "NUMBERED", "COMMENT")
 
 _START = "lines"
+_BY_HAND = ("CannotRead", "_terminal", "lexed")  # in the page's own sources, with "key" and the tokens
+_LEFT_OUT = (*_BY_HAND, "parser", "_grammar", "Functions", "_NAMED", "_QUOTIENTS", "GREEK")
+
+
+def reader() -> str:
+    """Return what tells the names of a text apart, and what is said where it cannot, as JavaScript for the page."""
+    known = (*_BY_HAND, "Token", "UnexpectedCharacters", "key")
+    return in_javascript((refusing, spelling, words), _LEFT_OUT, known)
 
 
 def tables() -> Texts:
@@ -43,7 +50,7 @@ def tables() -> Texts:
     those of them whose own parts take their place, and of an "alone" rule one part alone does.  A state says by the
     next symbol where to go, or as -1 - k that rule k ends.
     """
-    parser = reading._parser()
+    parser = spelling.parser()
     lexer, table = parser.parser.lexer, parser.parser.parser._parse_table
     rules: dict[Rule, int] = {}
     states = [
@@ -60,7 +67,17 @@ def tables() -> Texts:
         "states": states,
         "start": table.start_states[_START],
         "end": table.end_states[_START],
-        **_names(),
+        "layout": {name: spelling._terminal(name).pattern for name in _LAYOUT},
+        "functions": {
+            name: name if name in words._QUOTIENTS else function.__name__.lower()
+            for name, function in words.FUNCTIONS.items()
+        },
+        "limits": {
+            "power": building.LARGEST_POWER,
+            "degree": building.LARGEST_DEGREE,
+            "integer": building.LONGEST_INTEGER,
+            "size": building.LARGEST_SIZE,
+        },
     }
 
 
@@ -74,26 +91,4 @@ def _rule(rule: Rule) -> dict[str, Any]:
         "kept": kept,
         **({"spread": spread} if spread else {}),
         **({"alone": 1} if rule.options.expand1 and not rule.alias else {}),
-    }
-
-
-def _names() -> Texts:
-    """Return what tells names apart: other spellings, functions, accents, left sides of lines, limits."""
-    return {
-        "replaced": reading._REPLACED,
-        "combining": reading._ACCENTS,
-        "accents": points.ACCENTS.partition("(?:")[2].rstrip(")").split("|"),
-        "functions": {name: function.__name__.lower() for name, function in reading.FUNCTIONS.items()},
-        "label": reading._LABEL.pattern.replace(r"\w", "[A-Za-z0-9]"),
-        "opening": list(reading._OPENING),
-        "closing": list(reading._CLOSING),
-        "limits": {
-            "longest": reading.LONGEST,
-            "number": reading.LONGEST_NUMBER,
-            "word": reading.LONGEST_WORD,
-            "deepest": reading.DEEPEST,
-            "power": reading.LARGEST_POWER,
-            "degree": reading.LARGEST_DEGREE,
-            "integer": reading.LONGEST_INTEGER,
-        },
     }

@@ -1,12 +1,11 @@
 // What the page says of a sheet by itself: lines as mathematics, verdicts, and how the image moves by them.
 
-import { CannotRead } from "./parser.js";
-import { read } from "./reading.js";
+import { CannotRead } from "./python.js";
+import { placeIn, read, wordsIn } from "./reading.js";
 import { substituted } from "./formula.js";
 import { lacking } from "./polynomials.js";
 import { same } from "./proving.js";
 import { markupOf } from "./markup.js";
-import { Words } from "./words.js";
 import { grownOf, pictureOf } from "./arrows.js";
 
 const [WRONG, RIGHT] = ["wrong", "right"];
@@ -31,7 +30,9 @@ export class Sheet {
     this.printed = printed;
     this.said = said;
     this.markups = { ...letters, ...printed.markup };
-    const known = (names) => ({ tables, letters: new Set(names), labels: new Set(printed.labels) });
+    const { labels } = printed;
+    const lettersOf = (names) => new Map(names.map((name) => [name, { name, is_Symbol: true }]));
+    const known = (names) => ({ tables, refusals: said.refusals, letters: lettersOf(names), labels });
     this.known = known(printed.known);
     this.anything = known([...printed.known, ...Array.from({ length: 40 }, (_, k) => `q${k + 1}`)]);
     this.meant = new Map();
@@ -82,7 +83,7 @@ export class Sheet {
       const { said, lines } = this;
       let markup = "";
       try {
-        markup = markupOf(new Words(this.known, text).all(false), this.markups);
+        markup = markupOf(wordsIn(this.known, text, false), this.markups);
         const found = read(this.known, text);
         if (found.length !== 1 || !found[0].formula)
           return { markup, refusal: said["one formula"], position: text.length };
@@ -91,15 +92,9 @@ export class Sheet {
         return { markup, formula: found[0].formula };
       } catch (error) {
         if (!(error instanceof CannotRead)) throw error;
-        return { markup, ...this.refused(error) };
+        return { markup, refusal: error.message, position: placeIn(text, error.position) };
       }
     });
-  }
-
-  refused({ reason, at, parts }) {
-    const { refusals } = this.said;
-    const which = reason === "word" && parts.type === "$END" ? "end" : reason;
-    return { refusal: filled(refusals[which] ?? refusals.large, parts), position: at, reason };
   }
 
   /** The verdict on a line by itself: true, false, or null. */

@@ -2,8 +2,8 @@
 // functions.  Numbers are quotients of whole numbers.
 
 /**
- * @typedef {{kind: string, parts: Formula[], n?: bigint, d?: bigint, name?: string}} Formula  of a power n/d is the
- *   exponent, of a number its value
+ * @typedef {{kind: string, parts: Formula[], size?: number, n?: bigint, d?: bigint, name?: string}} Formula
+ *   of a power n/d is the exponent, of a number its value
  */
 
 /** @param {bigint} n @param {bigint} d @returns {Formula} */
@@ -87,13 +87,20 @@ export function degree(formula, known = new Map()) {
   return found;
 }
 
+/** How many letters, numbers and signs a formula has, each as often as it stands there. */
+export function size(formula) {
+  formula.size ??= formula.parts.reduce((all, part) => all + size(part), 1);
+  return formula.size;
+}
+
 /** A formula with formulas in place of letters. */
 export function substituted(formula, values, known = new Map()) {
   let found = known.get(formula);
   if (found) return found;
   const { kind, name, parts } = formula;
   found = kind === "letter" ? (values.get(name) ?? formula) : formula;
-  if (parts.length) found = { ...formula, parts: parts.map((part) => substituted(part, values, known)) };
+  const inner = parts.map((part) => substituted(part, values, known));
+  if (inner.length) found = { ...formula, size: undefined, parts: inner };
   known.set(formula, found);
   return found;
 }

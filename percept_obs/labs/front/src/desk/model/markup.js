@@ -74,7 +74,7 @@ class Writer {
 
   power() {
     const base = this.atom();
-    if (this.kind === "RAISED") return raised(base, `<mn>${this.take().text}</mn>`);
+    if (this.kind === "RAISED") return raised(base, `<mn>${this.take().value}</mn>`);
     if (this.kind !== "_POWER") return base;
     this.take();
     const minus = this.kind === "MINUS" ? signOf(this.take()) : "";
@@ -84,7 +84,7 @@ class Writer {
   atom() {
     if (GAPS.includes(this.kind)) return GAP;
     const word = this.take();
-    const { type, text } = word;
+    const { type, value: text } = word;
     if (BRACKETS[type]) return this.bracket(BRACKETS[type]);
     if (type === "NUMBER") return `<mn>${escaped(text)}</mn>`;
     if (type === "NAME") return this.letter(text);
@@ -122,7 +122,7 @@ class Writer {
 
 const escaped = (text) => text.replace(/[&<>"']/g, (sign) => `&#${sign.charCodeAt(0)};`);
 
-function signOf({ type, text }) {
+function signOf({ type, value: text }) {
   return type === "_LINE" ? "<mo>;</mo>" : `<mo>${escaped(SIGNS[text] ?? text)}</mo>`;
 }
 
