@@ -28,18 +28,20 @@ _OPERATIONS = {
 
 def in_javascript(modules: Iterable[ModuleType], left_out: Iterable[str], known: Iterable[str]) -> str:
     """Return modules as one module in JavaScript; names that are left out are those of `known`, which it imports."""
-    parts, names = [], set(known)
+    parts: list[str] = []
+    names, constants = set(known), set[str]()
     trees = [(module, ast.parse(inspect.getsource(module))) for module in modules]
     for _, tree in trees:
         names |= {node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
-    printer = _Printer({name: _signature(node) for _, tree in trees for name, node in _functions(tree)}, names)
+        constants |= {name.id for node in tree.body for target in _targets(node) for name in _stored(target)}
+    signatures = {name: _signature(node) for _, tree in trees for name, node in _functions(tree)}
+    printer = _Printer(signatures, names | constants)
     for module, tree in trees:
         for node in tree.body:
             if isinstance(node, ast.FunctionDef | ast.ClassDef) and node.name not in left_out:
                 parts.append(printer.definition(node))
             elif isinstance(node, ast.Assign | ast.AnnAssign):
-                targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-                for name in [part.id for target in targets for part in ast.walk(target) if isinstance(part, ast.Name)]:
+                for name in [part.id for target in _targets(node) for part in _stored(target)]:
                     if name not in left_out and not name.startswith("__"):
                         parts.append(f"const {name} = {literal(getattr(module, name))};")
     exported = ", ".join(sorted(name for name in names if name not in left_out and name not in known))
@@ -59,9 +61,9 @@ def literal(value: Any) -> str:
     if isinstance(value, re.Pattern):
         return f"py.pattern({json.dumps(value.pattern)})"
     if isinstance(value, Mapping):
-        return f"new Map([{', '.join(f'[{literal(k)}, {literal(v)}]' for k, v in value.items())}])"
+        return f"new Map(Object.entries({{ {', '.join(f'{literal(k)}: {literal(v)}' for k, v in value.items())} }}))"
     if isinstance(value, set | frozenset):
-        return f"new Set([{', '.join(map(literal, sorted(value)))}])"
+        return f"new Set({json.dumps(' '.join(sorted(value)))}.split(' '))"
     if isinstance(value, tuple | list):
         return f"[{', '.join(map(literal, value))}]"
     return "true" if callable(value) else json.dumps(value)
@@ -94,7 +96,8 @@ class _Printer(ast.NodeVisitor):
 
     def visit_ClassDef(self, node: ast.ClassDef) -> str:
         methods = [each for each in node.body if isinstance(each, ast.FunctionDef)]
-        return f"class {node.name} {{\n{''.join(self.function(each, method=True) for each in methods)}}}"
+        base = f" extends {self.visit(node.bases[0])}" if node.bases else ""
+        return f"class {node.name}{base} {{\n{''.join(self.function(each, method=True) for each in methods)}}}"
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> str:
         return self.function(node)
@@ -102,14 +105,16 @@ class _Printer(ast.NodeVisitor):
     def function(self, node: ast.FunctionDef, method: bool = False) -> str:
         arguments = self.arguments(node.args)
         stars = "*" if any(isinstance(part, ast.Yield | ast.YieldFrom) for part in _own(node)) else ""
-        self.local.append({arg.arg for arg in node.args.args})
-        names = sorted(_assigned(node) - {arg.arg for arg in node.args.args})
+        given = {arg.arg for arg in node.args.args}
+        names = sorted(_assigned(node) - given)
+        inside = {part.name for part in ast.walk(node) if isinstance(part, ast.FunctionDef | ast.ExceptHandler)}
+        self.local.append({*given, *names, *map(str, inside)})
         body = [f"let {', '.join(map(_named, names))};"] if names else []
         body += ["const self = this;"] if method else []
         text = "\n".join([*body, *map(self.visit, node.body)])
         self.local.pop()
         getter = "get " if any(isinstance(d, ast.Name) and d.id == "property" for d in node.decorator_list) else ""
-        name = "constructor" if node.name == "__init__" else node.name
+        name = "constructor" if node.name == "__init__" else _named(node.name)
         return f"{getter}{'' if method else 'function'}{stars} {name}({arguments}) {{\n{text}\n}}\n"
 
     def arguments(self, node: ast.arguments) -> str:
@@ -188,6 +193,9 @@ class _Printer(ast.NodeVisitor):
         assert isinstance(target, ast.Subscript)
         return f"py.del({self.visit(target.value)}, {self.index(target.slice)});"
 
+    def visit_Assert(self, node: ast.Assert) -> str:
+        return ""
+
     def visit_Continue(self, node: ast.Continue) -> str:
         return "continue;"
 
@@ -201,6 +209,8 @@ class _Printer(ast.NodeVisitor):
 
     def visit_Name(self, node: ast.Name) -> str:
         free = not any(node.id in names for names in self.local)
+        if free and node.id not in _PYTHON | self.names:
+            raise ValueError(f"line {node.lineno}: {node.id} has no JavaScript here; write it in python.js")
         if free and node.id in _PYTHON:
             return f"py.{node.id}{'_' if node.id == 'set' else ''}"
         return _named(node.id)
@@ -209,7 +219,13 @@ class _Printer(ast.NodeVisitor):
         return json.dumps(node.value)
 
     def visit_JoinedStr(self, node: ast.JoinedStr) -> str:
-        return f"py.join([{self.all(node.values)}])"
+        parts = [str(part.value) if isinstance(part, ast.Constant) else self.visit(part) for part in node.values]
+        texts = [isinstance(part, ast.Constant) for part in node.values]
+        quoted = (
+            re.sub(r"[`$\\]", r"\\\g<0>", part).replace("\n", "\\n") if text else f"${{{part}}}"
+            for part, text in zip(parts, texts, strict=True)
+        )
+        return f"`{''.join(quoted)}`"
 
     def visit_FormattedValue(self, node: ast.FormattedValue) -> str:
         return f"py.{'repr' if node.conversion == ord('r') else 'str'}({self.visit(node.value)})"
@@ -224,11 +240,12 @@ class _Printer(ast.NodeVisitor):
         return f"new Set([{', '.join(self.hashed(part) for part in node.elts)}])"
 
     def hashed(self, node: ast.expr) -> str:
-        return self.visit(node) if isinstance(node, ast.Starred) else f"py.key({self.visit(node)})"
+        constant = isinstance(node, ast.Starred | ast.Constant)
+        return self.visit(node) if constant else f"py.key({self.visit(node)})"
 
     def visit_Dict(self, node: ast.Dict) -> str:
         parts = [
-            f"[py.key({self.visit(key)}), {self.visit(value)}]" if key else f"...{self.visit(value)}"
+            f"[{self.hashed(key)}, {self.visit(value)}]" if key else f"...{self.visit(value)}"
             for key, value in zip(node.keys, node.values, strict=True)
         ]
         return f"new Map([{', '.join(parts)}])"
@@ -320,6 +337,10 @@ class _Printer(ast.NodeVisitor):
         return f"{owner}.{node.func.attr}({listed})"
 
     def comprehension(self, node: Any, inner: str) -> str:
+        if len(node.generators) == 1:
+            (part,) = node.generators
+            name, tests = self.visit(part.target), " && ".join(map(self.test, part.ifs))
+            return f"py.gen({self.visit(part.iter)}, ({name}) => {inner}{f', ({name}) => {tests}' if tests else ''})"
         text = f"yield {inner};"
         for part in reversed(node.generators):
             for test in reversed(part.ifs):
@@ -353,6 +374,7 @@ class _Printer(ast.NodeVisitor):
 
 
 _PYTHON = {
+    "pairwise",
     *(
         "len",
         "any",
@@ -477,6 +499,10 @@ def _targets(node: ast.AST) -> list[ast.expr]:
     if isinstance(node, ast.Assign):
         return node.targets
     return [node.target] if isinstance(node, ast.For | ast.AnnAssign | ast.AugAssign | ast.NamedExpr) else []
+
+
+def _stored(target: ast.expr) -> list[ast.Name]:
+    return [part for part in ast.walk(target) if isinstance(part, ast.Name)]
 
 
 def _bound_in(node: Any) -> set[str]:

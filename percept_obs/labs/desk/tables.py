@@ -7,7 +7,7 @@ from typing import Any
 from lark.grammar import NonTerminal, Rule, Terminal
 from lark.parsers.lalr_analysis import Shift
 
-from percept_obs.checking import building, refusing, spelling, words
+from percept_obs.checking import building, limits, notation, refusing, spelling, tokens, words
 from percept_obs.labs.desk.in_javascript import in_javascript
 from percept_obs.labs.shared.printed import Texts
 
@@ -38,8 +38,8 @@ _LEFT_OUT = (*_BY_HAND, "parser", "_grammar", "Functions", "_NAMED", "_QUOTIENTS
 
 def reader() -> str:
     """Return what tells the names of a text apart, and what is said where it cannot, as JavaScript for the page."""
-    known = (*_BY_HAND, "Token", "UnexpectedCharacters", "key")
-    return in_javascript((refusing, spelling, words), _LEFT_OUT, known)
+    known = (*_BY_HAND, "Token", "UnexpectedCharacters", "key", "sp")
+    return in_javascript((refusing, spelling, tokens, notation, words), _LEFT_OUT, known)
 
 
 def tables() -> Texts:
@@ -69,14 +69,14 @@ def tables() -> Texts:
         "end": table.end_states[_START],
         "layout": {name: spelling._terminal(name).pattern for name in _LAYOUT},
         "functions": {
-            name: name if name in words._QUOTIENTS else function.__name__.lower()
-            for name, function in words.FUNCTIONS.items()
+            name: name if name in tokens._QUOTIENTS else function.__name__.lower()
+            for name, function in tokens.FUNCTIONS.items()
         },
         "limits": {
             "power": building.LARGEST_POWER,
             "degree": building.LARGEST_DEGREE,
             "integer": building.LONGEST_INTEGER,
-            "size": building.LARGEST_SIZE,
+            "size": limits.LARGEST,
         },
     }
 

@@ -1,6 +1,6 @@
 // What the page says of a sheet by itself: lines as mathematics, verdicts, and how the image moves by them.
 
-import { CannotRead } from "./python.js";
+import { CannotRead, sp } from "./python.js";
 import { placeIn, read, wordsIn } from "./reading.js";
 import { substituted } from "./formula.js";
 import { lacking } from "./polynomials.js";
@@ -31,7 +31,7 @@ export class Sheet {
     this.said = said;
     this.markups = { ...letters, ...printed.markup };
     const { labels } = printed;
-    const lettersOf = (names) => new Map(names.map((name) => [name, { name, is_Symbol: true }]));
+    const lettersOf = (names) => new Map(names.map((name) => [name, sp.Symbol(name)]));
     const known = (names) => ({ tables, refusals: said.refusals, letters: lettersOf(names), labels });
     this.known = known(printed.known);
     this.anything = known([...printed.known, ...Array.from({ length: 40 }, (_, k) => `q${k + 1}`)]);

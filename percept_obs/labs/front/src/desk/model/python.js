@@ -57,22 +57,23 @@ class Pattern {
   }
 
   get all() {
-    return (this.compiled ??= this.made("gd"));
+    this.compiled ??= this.made("g");
+    this.compiled.lastIndex = 0;
+    return this.compiled;
   }
 
   search(text) {
-    this.all.lastIndex = 0;
     return matched(this.all.exec(plain(text)));
   }
 
   match(text, start = 0) {
-    const sticky = (this.sticky ??= this.made("yd"));
+    const sticky = (this.sticky ??= this.made("y"));
     sticky.lastIndex = start;
     return matched(sticky.exec(plain(text)));
   }
 
   fullmatch(text) {
-    return matched((this.whole ??= this.made("d", (pattern) => `^(?:${pattern})$(?![^])`)).exec(plain(text)));
+    return matched((this.whole ??= this.made("", (pattern) => `^(?:${pattern})$(?![^])`)).exec(plain(text)));
   }
 
   finditer(text) {
@@ -103,12 +104,16 @@ class Pattern {
 }
 
 const filled = (by, found) =>
-  by.replace(/\\(\d|\\)/g, (_, which) => (which === "\\" ? "\\" : (found.groups[which] ?? "")));
+  by.replace(/\\(\d|\\)/g, (_, which) => (which === "\\" ? "\\" : (found.parts[which] ?? "")));
 
 class Match {
-  constructor(groups, at) {
-    this.groups = groups;
+  constructor(parts, at) {
+    this.parts = parts;
     this.at = at;
+  }
+
+  groups() {
+    return this.parts.slice(1).map((part) => part ?? null);
   }
 
   start() {
@@ -116,7 +121,7 @@ class Match {
   }
 
   end() {
-    return this.at + this.groups[0].length;
+    return this.at + this.parts[0].length;
   }
 
   span() {
@@ -167,10 +172,7 @@ const METHODS = {
   index: (x, part) => (isText(x) ? plain(x).indexOf(plain(part)) : x.findIndex((each) => py.eq(each, part))),
   append: (x, value) => void x.push(value),
   pop: (x, k) => (k === undefined ? x.pop() : x.splice(place(k, x.length), 1)[0]),
-  extend: (x, values) => void x.push(...values),
-  items: (x) => [...x.entries()],
   values: (x) => [...x.values()],
-  keys: (x) => [...x.keys()],
   get: (x, key, other = null) => (x.has(plain(key)) ? x.get(plain(key)) : other),
   add: (x, value) => void x.add(plain(value)),
   fromkeys: (x, keys, value = null) => new Map([...py.iter(keys)].map((key) => [plain(key), value])),
@@ -240,14 +242,13 @@ export const py = {
   sub: (one, other) =>
     one instanceof Set ? new Set([...one].filter((each) => !other.has(each))) : Number(one) - Number(other),
   or: (one, other) => (one instanceof Map ? new Map([...one, ...other]) : new Set([...one, ...py.iter(other)])),
-  ior: (one, other) => py.or(one, other),
   and: (one, other) => new Set([...one].filter((each) => py.in(each, other))),
   key: plain,
   pattern,
   slice: (start, stop, step) => new Slice(start, stop, step),
   item(x, k) {
     if (k instanceof Slice) return sliced(x, k);
-    if (x instanceof Match) return x.groups[k] ?? null;
+    if (x instanceof Match) return x.parts[k] ?? null;
     if (x instanceof Map) return x.get(plain(k));
     const values = plain(x);
     return values[place(k, values.length)];
@@ -264,6 +265,9 @@ export const py = {
       x.splice(start, (k.stop === null ? x.length : place(k.stop, x.length)) - start);
     } else if (x instanceof Map) x.delete(plain(k));
     else x.splice(place(k, x.length), 1);
+  },
+  *gen(x, make, keeps = () => true) {
+    for (const each of py.iter(x)) if (keeps(each)) yield make(each);
   },
   iter: (x) => (x instanceof Map ? x.keys() : plain(x)),
   methods: METHODS,
@@ -296,6 +300,7 @@ export const py = {
     const size = Math.min(...rows.map((row) => row.length));
     return Array.from({ length: size }, (_, k) => rows.map((row) => row[k]));
   },
+  pairwise: (x) => py.zip(x, [...py.iter(x)].slice(1)),
   enumerate: (x, first = 0) => [...py.iter(x)].map((each, k) => [k + first, each]),
   range(first, last, step = 1) {
     const [start, stop] = last === undefined ? [0, first] : [first, last];
@@ -349,3 +354,15 @@ export function key(name) {
   const marks = bare.match(MARKS) ?? [];
   return bare.replace(MARKS, "") + marks.sort((a, b) => ACCENTS.indexOf(a) - ACCENTS.indexOf(b)).join("");
 }
+
+/** A letter that may stand in a formula. */
+class Letter {
+  is_Symbol = true;
+
+  constructor(name) {
+    this.name = name;
+  }
+}
+
+/** As far as words ask for it: which letters are of numbers. */
+export const sp = { Expr: Letter, MatrixExpr: class {}, Symbol: (name) => new Letter(name), oo: new Letter("oo") };

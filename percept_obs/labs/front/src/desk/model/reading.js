@@ -5,7 +5,7 @@ import { ONE, power, product, size, substituted, sum, ZERO } from "./formula.js"
 import { placeOf, treeOf, UnexpectedToken, wordsOf } from "./parser.js";
 import { about_token, Words } from "./printed.js";
 import { same } from "./proving.js";
-import { Token, useTables } from "./python.js";
+import { py, Token, useTables } from "./python.js";
 
 /**
  * @typedef {{tables: any, refusals: Record<string, string>, letters: Map<string, any>, labels: string[]}} Known  what
@@ -133,6 +133,7 @@ class Reader {
     if (type === "NUMBER") return decimal(name);
     if (type === "PI") return applied("pi");
     if (this.known.letters.has(name)) return letter(name);
+    if (py.t(this.words.column(name))) return null;
     if (this.sides.has(name)) return this.side(name, node);
     if (!this.known.labels.includes(name)) this.refuse("transpose", node);
     this.rates.add(name);
@@ -232,6 +233,7 @@ const RULES = {
   },
   raised(reader, node, base, exponent) {
     const value = reader.value(base);
+    if (exponent.value === "T" && (!value || !reader.known.letters.has("T"))) return value; // of a number, itself
     return value && reader.power(node, value, reader.exponent(exponent));
   },
   exponential: (reader, node, base, exponent) => applied("exp", reader.scalar(exponent)),
