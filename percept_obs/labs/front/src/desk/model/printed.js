@@ -39,6 +39,7 @@ const py_methods_isalpha = py.methods.isalpha;
 const py_methods_isascii = py.methods.isascii;
 const py_methods_isdigit = py.methods.isdigit;
 const py_methods_isspace = py.methods.isspace;
+const py_methods_items = py.methods.items;
 const py_methods_join = py.methods.join;
 const py_methods_lower = py.methods.lower;
 const py_methods_lstrip = py.methods.lstrip;
@@ -483,10 +484,12 @@ const LONGEST = 9000;
 const LONGEST_NUMBER = 15;
 const LONGEST_WORD = 60;
 const DEEPEST = 40;
+const _TOO_LONG = new Map(Object.entries({ "'{9}": "more than 8 primes stand here", "[A-Za-z0-9_\\u0302-\\u0307]{240}": "a word has more than 60 letters" }));
 const _OPERAND_ENDS = new Set("NAME NUMBER PI RAISED RBRACE RPAR RSQB _BAR_CLOSE _END_MATRIX _NORM_CLOSE".split(' '));
 const _OPERAND_STARTS = new Set("EULER LBRACE LPAR LSQB NAME NUMBER PI RAISED SLASH _FRACTION _ROOT".split(' '));
 class Notation {
  constructor(text, letters, labels, functions) {
+let found, pattern, what;
 const self = this;
 [self.text, self.letters, self.labels, self.functions] = py_list([text, letters, py_set_(labels), functions]);
 self.known = new Set([...py_iter(letters), ...py_iter(self.labels)]);
@@ -494,6 +497,11 @@ if (py_compare(py_len(text), ">", LONGEST)) {
 throw new CannotRead(text, LONGEST, `the formula has ${py_str(py_len(text))} characters; at most ${py_str(LONGEST)}`);
 }
 [self.plain, self.origin] = py_list(spelled(text));
+for ([pattern, what] of py_iter(py_methods_items(_TOO_LONG))) {
+if (py_t((found = py_re.search(pattern, self.plain)))) {
+self.refuse(`${py_str(what)}; write * between letters`, found.start());
+}
+}
 self.bound = new Map([]);
 }
  refuse(message, at = null) {
@@ -505,7 +513,7 @@ position = ((!py_is(start, null) && py_compare(start, "<", py_len(self.origin)))
 throw new CannotRead(self.text, position, message);
 }
  _raw() {
-let long, position, raw;
+let position, raw;
 const self = this;
 try {
 raw = [...py_iter(lexed(laid_out(self.plain))), new Token("END", "", py_len(self.plain), { end_pos: py_len(self.plain) })];
@@ -513,10 +521,6 @@ raw = [...py_iter(lexed(laid_out(self.plain))), new Token("END", "", py_len(self
 if (!(error_ instanceof UnexpectedCharacters)) throw error_;
 let error = error_;position = py_item(self.origin, py_some(error.pos_in_stream, () => 0));
 throw new CannotRead(self.text, position, about_character(py_item(self.text, position)));
-}
-long = py_next(py_gen(raw, (token) => token, (token) => (py_in(token.type, ["NAME", "RATE"]) && py_compare(py_len(token), ">", py_mul(4, LONGEST_WORD)))), null);
-if (py_t(long)) {
-self.refuse(`a word has more than ${py_str(LONGEST_WORD)} letters; write * between letters`, long);
 }
 return raw;
 }
