@@ -93,7 +93,7 @@ def test_other_systems_are_judged_too_and_one_of_a_name_if_it_was_saved(alone):
     assert "sphere" in text_of(page, ".whose")
     page.fill(control("student"), "Grace")
     page.keyboard.press("Enter")
-    page.get_by_text("Only Python derives this system").wait_for()
+    page.locator(".problem", has_text="Only Python derives this system").wait_for()
     page = alone(face="workbench", step=6, student="Ada")
     page.locator(LINE).fill("a11 y1 + a13 y2 - a22 y1 - a23 y1 y2 + b1 y3 - b2 y1 y3")
     page.locator(".mark.right").wait_for()

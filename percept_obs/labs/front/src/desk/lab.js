@@ -213,7 +213,7 @@ export class DeskLab extends LabBase {
     if (sameLines && answer.picture) this.draw();
     if (sameLines) replay.show(this.theme);
     if (current) this.view.says(this.sentence(answer));
-    if (current && this.calm && replay.at === null) this.view.announce(answer.problem ?? this.sheet.told(answer));
+    if (current && this.calm && replay.at === null) this.view.announce(answer.problem ? "" : this.sheet.told(answer));
   }
 
   draw() {
