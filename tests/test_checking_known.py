@@ -60,4 +60,6 @@ def test_a_number_for_a_column_is_refused_with_the_size_of_the_column():
 
 
 def test_a_wrong_line_without_values_is_explained_too():
-    assert "this has no values that can be compared" in str(check("y1' = exp(exp(exp(exp(exp(exp(y1))))))", AFFINE).hint(3))
+    assert "this has no values that can be compared" in str(
+        check("y1' = exp(exp(exp(exp(exp(exp(y1))))))", AFFINE).hint(3)
+    )
