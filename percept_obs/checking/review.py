@@ -28,7 +28,7 @@ MARKS = {
     Verdict.CANNOT_TELL: "?",
 }
 CANNOT_BE_TOLD = "It cannot be told whether this is the same; write it closer to the usual form."
-DECIDING = 0.65 * SECONDS
+DECIDING = 0.55 * SECONDS
 """The rest of the time is left for printing."""
 HINTS = ("which line", "which term", "which slip, and in which step")
 
