@@ -214,7 +214,7 @@ class _Exactly:
         if known := _definite(e):
             return known
         product = 1
-        for factor, power in _powers(e):
+        for factor, power in powers(e):
             if power % 2:
                 product *= _definite(factor) or self.kink(self.value(factor))
         return product
@@ -238,7 +238,7 @@ class _Exactly:
     def root(self, e: sp.Expr) -> int:
         """Return a square root: even factors come out with their sign, positive ones have roots of their own."""
         product, rest = 1, 1
-        for factor, power in _powers(e):
+        for factor, power in powers(e):
             number, half = self.value(factor), int(power) // 2
             size = self.sign(factor) * number if half else 1
             product = product * pow(size if half >= 0 else self.inverse(size), abs(half), self.p) % self.p
@@ -328,15 +328,15 @@ def _definite(e: sp.Basic) -> int:
 
 
 @lru_cache(maxsize=1024)
-def _powers(e: sp.Expr) -> tuple[tuple[sp.Expr, int], ...]:
+def powers(e: sp.Expr) -> tuple[tuple[sp.Expr, int], ...]:
     """Return the factors of an expression with their exponents."""
     if e.is_Mul:
-        return tuple(each for part in e.args for each in _powers(part))
+        return tuple(each for part in e.args for each in powers(part))
     if e.is_Pow and e.exp.is_Integer:
-        return tuple((factor, power * int(e.exp)) for factor, power in _powers(e.base))
+        return tuple((factor, power * int(e.exp)) for factor, power in powers(e.base))
     if e.is_Add and extent(e).parts < 100 and e.is_polynomial():
         content, factors = sp.factor_list(e)
-        return (*_powers(content), *factors)
+        return (*powers(content), *factors)
     if e.is_Rational and max(abs(e.p), e.q) < 10**12:
         return tuple((sp.Integer(prime), power) for prime, power in sp.factorrat(e).items())
     return ((e, 1),)
