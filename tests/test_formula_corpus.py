@@ -30,7 +30,7 @@ def test_right_formulas_are_read_and_judged_right():
         if verdict != RIGHT:
             print(f"{verdict}: {entry.text}\n{why}")
     assert counts[NOT_READ] <= 0.02 * len(found)
-    assert {verdict for entry, verdict, _ in found if entry.family != "known relations"} <= {RIGHT, NOT_READ}
+    assert counts[RIGHT] + counts[NOT_READ] == len(found)
 
 
 @pytest.mark.parametrize("entry", entries("asked"), ids=lambda entry: entry.text[:40])

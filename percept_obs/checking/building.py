@@ -133,8 +133,9 @@ class Builder:
                 self._unclear(before, part)
             factor = self.value(part)
             if isinstance(factor, MATRICES):
-                if factors and isinstance(factors[-1], MATRICES) and factors[-1].shape[1] != factor.shape[0]:
-                    factors[-1], factor = self._fitting(factors[-1], before, factor, part)
+                other = next((k for k in range(len(factors) - 1, -1, -1) if isinstance(factors[k], MATRICES)), None)
+                if other is not None and factors[other].shape[1] != factor.shape[0]:
+                    factors[other], factor = self._fitting(factors[other], before, factor, part)
                 size += letters_in_a_row(factor)
                 if size > LONGEST_PRODUCT:
                     self.refuse(f"more than {LONGEST_PRODUCT} letters of matrices stand in a row", part)

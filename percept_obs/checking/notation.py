@@ -23,7 +23,7 @@ from percept_obs.checking.tokens import (
     unit_end,
 )
 
-LONGEST, LONGEST_NUMBER, LONGEST_WORD, DEEPEST = 9000, 15, 60, 40
+LONGEST, LONGEST_NUMBER, LONGEST_WORD, DEEPEST, MOST_INTEGRALS = 9000, 15, 60, 40, 20
 _TOO_LONG = {
     r"'{9}": "more than 8 primes stand here",
     rf"[A-Za-z0-9_\u0302-\u0307]{{{4 * LONGEST_WORD}}}": f"a word has more than {LONGEST_WORD} letters",
@@ -171,6 +171,9 @@ class Notation:
 
     def _integrals(self, tokens: list[Token]) -> list[Token]:
         """Write an integral over bounds, an integrand and d tau, as a function of them."""
+        many = [token for token in tokens if token.type == "INTEGRAL"][MOST_INTEGRALS:]
+        if many:
+            self.refuse(f"more than {MOST_INTEGRALS} integrals stand here; write them in several texts", many[0])
         for start in range(len(tokens) - 1, -1, -1):
             if tokens[start].type != "INTEGRAL":
                 continue
