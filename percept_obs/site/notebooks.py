@@ -142,7 +142,7 @@ def without_widgets(notebook: nbformat.NotebookNode, script: str) -> nbformat.No
             if VIEW not in output.get("data", {}):
                 continue
             name = output["data"][VIEW]["model_id"]
-            if name in labs and labs[name]["kind"] != "desk_lab":
+            if name in labs:
                 html, script = script + place_of(labs[name]), ""
             else:
                 html = f"<p><em>{NEEDS_PYTHON}</em></p>" + "".join(_last_shown(models, name))

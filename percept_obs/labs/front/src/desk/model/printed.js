@@ -131,7 +131,7 @@ return "an operator or the end of the line is expected here";
 
 const ACCENTS = new Map(Object.entries({ "\u0302": "hat", "\u0304": "bar", "\u0307": "dot", "\u0303": "tilde" }));
 const _OVER = new Map(Object.entries({ "hat": "hat", "bar": "bar", "dot": "dot", "tilde": "tilde", "widehat": "hat", "widetilde": "tilde", "overline": "bar" }));
-const REPLACED = new Map(Object.entries({ "\u03b1": "alpha", "\u03b2": "beta", "\u03b3": "gamma", "\u03b4": "delta", "\u03b5": "epsilon", "\u03b6": "zeta", "\u03b7": "eta", "\u03b8": "theta", "\u03b9": "iota", "\u03ba": "kappa", "\u03bb": "lambda", "\u03bc": "mu", "\u03bd": "nu", "\u03be": "xi", "\u03bf": "omicron", "\u03c0": "pi", "\u03c1": "rho", "\u03c3": "sigma", "\u03c4": "tau", "\u03c5": "upsilon", "\u03c6": "phi", "\u03c7": "chi", "\u03c8": "psi", "\u03c9": "omega", "\u0393": "Gamma", "\u0394": "Delta", "\u0398": "Theta", "\u039b": "Lambda", "\u039e": "Xi", "\u03a0": "Pi", "\u03a3": "Sigma", "\u03a6": "Phi", "\u03a8": "Psi", "\u03a9": "Omega", "\u03f5": "epsilon", "\u03d1": "theta", "\u03d5": "phi", "\u03f1": "rho", "\u03d6": "pi", "\u2080": "0", "\u2081": "1", "\u2082": "2", "\u2083": "3", "\u2084": "4", "\u2085": "5", "\u2086": "6", "\u2087": "7", "\u2088": "8", "\u2089": "9", "\u2212": "-", "\u2013": "-", "\u00b7": "*", "\u22c5": "*", "\u00d7": "*", "\u2217": "*", "\u2032": "'", "\u2019": "'", "\u27e8": "(", "\u27e9": ")", "\u2260": "!=", "\u2264": "<=", "\u2265": ">=", "\u00bd": "(1/2)", "\u00bc": "(1/4)", "\u00be": "(3/4)", "\u2153": "(1/3)", "\u2154": "(2/3)", "\u2016": "||", "\u221a": "\\sqrt", "\u2211": "\\sum", "\u2261": "\\equiv", "\u2254": ":=", "\u225c": "\\triangleq", "\u1d40": "^{\\top}", "\u2033": "''", "\u2009": " ", "\u202f": " ", "\u00a0": " ", "\u2002": " ", "\u2003": " ", "\u2061": " ", "\u2062": " " }));
+const REPLACED = new Map(Object.entries({ "\u03b1": "alpha", "\u03b2": "beta", "\u03b3": "gamma", "\u03b4": "delta", "\u03b5": "epsilon", "\u03b6": "zeta", "\u03b7": "eta", "\u03b8": "theta", "\u03b9": "iota", "\u03ba": "kappa", "\u03bb": "lambda", "\u03bc": "mu", "\u03bd": "nu", "\u03be": "xi", "\u03bf": "omicron", "\u03c0": "pi", "\u03c1": "rho", "\u03c3": "sigma", "\u03c4": "tau", "\u03c5": "upsilon", "\u03c6": "phi", "\u03c7": "chi", "\u03c8": "psi", "\u03c9": "omega", "\u0393": "Gamma", "\u0394": "Delta", "\u0398": "Theta", "\u039b": "Lambda", "\u039e": "Xi", "\u03a0": "Pi", "\u03a3": "Sigma", "\u03a6": "Phi", "\u03a8": "Psi", "\u03a9": "Omega", "\u03f5": "epsilon", "\u03d1": "theta", "\u03d5": "phi", "\u03f1": "rho", "\u03d6": "pi", "\u2080": "0", "\u2081": "1", "\u2082": "2", "\u2083": "3", "\u2084": "4", "\u2085": "5", "\u2086": "6", "\u2087": "7", "\u2088": "8", "\u2089": "9", "\u2212": "-", "\u2013": "-", "\u00b7": "*", "\u22c5": "*", "\u00d7": "*", "\u2217": "*", "\u2032": "'", "\u2019": "'", "\u27e8": "(", "\u27e9": ")", "\u2260": "!=", "\u2264": "<=", "\u2265": ">=", "\u00bd": "(1/2)", "\u00bc": "(1/4)", "\u00be": "(3/4)", "\u2153": "(1/3)", "\u2154": "(2/3)", "\u2192": "\\implies ", "\u21d2": "\\implies ", "\u27f9": "\\implies ", "\u2234": "\\implies ", "\u02d9": "'", "\u2016": "||", "\u221a": "\\sqrt", "\u2211": "\\sum", "\u2261": "\\equiv", "\u2254": ":=", "\u225c": "\\triangleq", "\u1d40": "^{\\top}", "\u2033": "''", "\u2009": " ", "\u202f": " ", "\u00a0": " ", "\u2002": " ", "\u2003": " ", "\u2061": " ", "\u2062": " " }));
 const _RELATION = py_pattern("[=<>]|\\\\(neq?|leq?|geq?|lt|gt|equiv|triangleq|coloneqq)(?![A-Za-z])");
 const _FORMULA = py_pattern("[+*/^=<>()\\[\\]{}&\\\\]|(^|\\s)-|-(\\s|$)|[\\d_']\\w*\\s+\\w*[\\d_']");
 const _SIGN_ALONE = py_pattern("[\\s$`\\\\()\\[\\]]*([-+*/^]|plus|minus|times|over)[\\s$`\\\\()\\[\\]]*");
@@ -229,12 +229,13 @@ function _line(line) {
 let numbered, start, words;
 
 line = _terminal("COMMENT").sub(((found) => py_mul(" ", py_len(py_item(found, 0)))), line);
-line = py_re.sub("^\\s*>|^\\s*\\*\\*(?=\\S)|(?<=\\S)\\*{1,3}\\s*$|^\\s*\\*(?=[A-Za-z\\\\])", ((f) => py_mul(" ", py_len(py_item(f, 0)))), line);
+line = py_re.sub("^\\s*>|^\\s*\\*\\*(?=\\S)|^\\s*__(?=\\S)|(?<=\\S)__\\s*$|(?<=\\S)\\*{1,3}\\s*$|^\\s*\\*(?=[A-Za-z\\\\])", ((f) => py_mul(" ", py_len(py_item(f, 0)))), line);
 start = py_sub(py_len(line), py_len(py_methods_lstrip(line)));
 if (py_t((numbered = _terminal("NUMBERED").match(line, start)))) {
 line = py_add(py_mul(" ", numbered.end()), py_item(line, py_slice(numbered.end(), null, null)));
 }
 line = py_re.sub("(?<=\\s\\s|.,|ad)\\s*\\((\\d{1,2}[a-z]?)\\)\\s*[.,]?\\s*$", ((f) => py_mul(" ", py_len(py_item(f, 0)))), line);
+line = py_re.sub("\\(((?:with|where)\\s.*)\\)(\\s*)$", " \\1 \\2", line);
 if (py_t(_NAMED_BY_COLON.fullmatch(line))) {
 line = py_methods_replace(line, ":", "=", 1);
 if (py_methods_startswith(py_methods_lstrip(line), "{")) {
@@ -315,6 +316,7 @@ found = _CALLS.fullmatch(token);
 [inner, by] = py_list([py_next(py_gen(found.groups(), (part) => part, (part) => py_t(part))), "t"]);
 }
 }
+inner = (py_methods_startswith(py_methods_strip(inner), "(") ? py_methods_removesuffix(py_methods_removeprefix(py_methods_strip(inner), "("), ")") : inner);
 name = name_of(py_methods_strip(py_re.sub("\\s*\\([^()]*\\)\\s*$", "", inner)));
 return (py_eq(by, "t") ? key(`${py_str(name)}dot`) : `d${py_str(name)}`);
 }
@@ -331,7 +333,7 @@ py_methods_append(found, key(`${py_str(py_item(quotient, 1))}dot`));
 return py_list(py_gen(py_methods_fromkeys(py_dict, found), (each) => each, (each) => !py_eq(each, name)));
 }
 
-const FUNCTIONS = new Map(Object.entries({ "sin": true, "cos": true, "tan": true, "asin": true, "acos": true, "atan": true, "sinh": true, "cosh": true, "tanh": true, "sech": true, "exp": true, "log": true, "sqrt": true, "sign": true, "abs": true, "sgn": true, "ln": true, "arctan": true, "arcsin": true, "arccos": true, "Abs": true, "sec": true, "csc": true, "cot": true, "coth": true }));
+const FUNCTIONS = new Map(Object.entries({ "sin": true, "cos": true, "tan": true, "asin": true, "acos": true, "atan": true, "sinh": true, "cosh": true, "tanh": true, "sech": true, "exp": true, "log": true, "sqrt": true, "sign": true, "abs": true, "sgn": true, "ln": true, "arctan": true, "arcsin": true, "arccos": true, "Abs": true, "fabs": true, "sec": true, "csc": true, "cot": true, "coth": true }));
 const WRAPPERS = new Set("ImmutableMatrix Matrix array expand factor simplify".split(' '));
 const OPENING = new Map(Object.entries({ "LPAR": "RPAR", "LBRACE": "RBRACE", "LSQB": "RSQB", "_BAR_OPEN": "_BAR_CLOSE", "_NORM_OPEN": "_NORM_CLOSE", "_MATRIX": "_END_MATRIX", "_CASES": "_END_CASES" }));
 const AROUND = new Map(Object.entries({ "_MATRIX": "_END_MATRIX", "_CASES": "_END_CASES", "LBRACE": "RBRACE" }));
@@ -609,7 +611,7 @@ middle = py_add(py_some(token.start_pos, () => 0), py_len(whole));
 ends = new Token("NUMBER", part, (middle + 1), { end_pos: py_add((middle + 1), py_len(part)) });
 return [token.update({ type: "NUMBER", value: whole }), new Token("COMMA", ",", middle, { end_pos: (middle + 1) }), ends];
 }
-if ((py_eq(py_len(part), 3) && !py_eq(whole, "0") && !py_in("{", token))) {
+if ((py_eq(py_len(part), 3) && py_methods_isdigit(part) && !py_eq(whole, "0") && !py_in("{", token))) {
 self.refuse(two_meanings([py_add(whole, part), `${py_str(whole)}.${py_str(part)}`], "type it without a comma"), token);
 }
 return [token.update({ type: "NUMBER", value: `${py_str(whole)}.${py_str(part)}` })];
@@ -676,7 +678,7 @@ out = py_iadd(out, (py_t(kind) ? [(!py_eq(kind, token.type) ? token.update({ typ
 return out;
 }
  _integrals(tokens) {
-let bounds, comma, inside, k, lower, partner, parts, size, start, upper, variable;
+let bounds, comma, inside, k, last, lower, partner, parts, size, start, upper, variable;
 const self = this;
 
 for (start of py_iter(py_range((py_len(tokens) - 1), -1, -1))) {
@@ -684,11 +686,12 @@ if (!py_eq(py_item(tokens, start).type, "INTEGRAL")) {
 continue;
 }
 partner = partners(tokens);
-lower = (py_methods_get(partner, (start + 1), (start + 1)) + 1);
+last = (py_len(tokens) - 1);
+lower = py_min((py_methods_get(partner, (start + 1), (start + 1)) + 1), last);
 if (!py_eq(py_item(tokens, lower).type, "_POWER")) {
 self.refuse("an integral has a lower and an upper bound, \\int_{0}^{t} ... d tau", py_item(tokens, start));
 }
-upper = (py_methods_get(partner, (lower + 1), (lower + 1)) + 1);
+upper = py_min((py_methods_get(partner, (lower + 1), (lower + 1)) + 1), last);
 k = upper;
 while ((!py_in(py_item(tokens, k).type, ["END", "EQUAL", "RELATION", ...py_iter(CLOSING)]) && !(py_t(differential(tokens, k))))) {
 k = (py_methods_get(partner, k, k) + 1);
@@ -920,7 +923,7 @@ k = (end + 1);
 return out;
 }
  _applied(before, inner, first) {
-let changed, known, letter, numbers, of_numbers, text, timed, told, unknown, words;
+let known, letter, numbers, of_numbers, text, timed, told, unknown, words;
 const self = this;
 
 letter = py_next(py_gen(py_reversed(py_item(before, py_slice(-6, null, null))), (t) => py_str(t), (t) => (py_eq(t.type, "NAME") && !py_eq(t, "T"))), "");
@@ -946,18 +949,17 @@ unknown = py_list(py_gen(words, (word) => word, (word) => (!py_in(self._spelled(
 numbers = py_methods_get(self.letters, self._spelled(letter));
 of_numbers = (py_isinstance(numbers, sp.Expr) && !(py_isinstance(numbers, sp.MatrixExpr)));
 if (py_is(top_level(inner, 0, "COMMA"), null)) {
-timed = py_every(py_eq(py_item(inner, 0).type, "NAME"), () => self._only_times(py_item(inner, py_slice(2, -1, null))), () => py_eq(py_item(inner, 1).type, "LPAR"));
+timed = py_every(py_compare(py_len(inner), ">", 3), () => py_eq(py_item(inner, 0).type, "NAME"), () => self._only_times(py_item(inner, py_slice(2, -1, null))), () => py_eq(py_item(inner, 1).type, "LPAR"));
 return ((py_t(timed) || (py_eq(unknown, words) && py_t(words) && !(py_t(of_numbers)))) ? letter : "");
 }
 if ((py_t(of_numbers) && !(py_t(unknown)))) {
 return "";
 }
-known = first.setdefault(letter, words);
-changed = py_next(py_gen(words, (word) => word, (word) => !py_in(word, known)), "");
 if ((py_any(py_gen(words, (word) => py_in("hat", word))) && py_in(key(`${py_str(letter)}hat`), self.known))) {
 return key(`${py_str(letter)}hat`);
 }
-return py_add(letter, py_methods_rstrip(changed, "0123456789"));
+known = first.setdefault(letter, words);
+return py_add(letter, py_methods_rstrip(py_next(py_gen(words, (word) => word, (word) => !py_in(word, known)), ""), "0123456789"));
 }
  _only_times(inner) {
 let names, times;
@@ -1148,7 +1150,7 @@ out = py_iadd(out, self._told_apart(token, (py_t(k) ? py_item(tokens, (k - 1)).t
 return out;
 }
  _told_apart(token, before, after) {
-let guess, kinds, known, name, near, start, transpose, typed, ways;
+let called, guess, kinds, known, name, near, start, transpose, typed, way, ways;
 const self = this;
 name = py_str(token);
 if (py_eq(token.type, "COMMAND")) {
@@ -1190,6 +1192,11 @@ return py_list(py_gen(py_item(ways, 0), (part) => token.update({ value: self._sp
 }
 if (py_t(ways)) {
 self.refuse(`"${py_str(name)}" can be read as ${py_str(py_methods_join(" or ", py_map(" ".join, ways)))}; write * between`, token);
+}
+called = py_list(py_gen(FUNCTIONS, (each) => each, (each) => (py_methods_endswith(name, each) && py_eq(py_len(self._ways(py_methods_removesuffix(name, each))), 1))));
+if ((py_eq(after, "LPAR") && py_eq(py_len(called), 1))) {
+[way] = py_list(self._ways(py_methods_removesuffix(name, py_item(called, 0))));
+return [...py_iter(py_gen(way, (part) => token.update({ value: part }))), token.update({ type: "FUNCTION", value: py_item(called, 0) })];
 }
 near = py_difflib.get_close_matches(name, self.letters, 1, 0.5);
 known = py_methods_join(", ", py_item(py_sorted(py_gen(py_methods_values(self.letters), (letter) => py_str(letter), (letter) => py_t(letter.is_Symbol))), py_slice(null, 40, null)));
