@@ -334,6 +334,8 @@ class _Printer(ast.NodeVisitor):
         owner = self.visit(node.func.value)
         if node.func.attr in _METHODS and owner not in ("self", "py.re"):
             return f"py.methods.{node.func.attr}({owner}{', ' if listed else ''}{listed})"
+        if node.func.attr not in _METHODS | _OTHERS | set(self.signatures):
+            raise ValueError(f"line {node.lineno}: the method {node.func.attr} has no JavaScript here")
         return f"{owner}.{node.func.attr}({listed})"
 
     def comprehension(self, node: Any, inner: str) -> str:
@@ -422,7 +424,13 @@ _QUESTIONS = {
     "isspace",
     "isascii",
 }
+_OTHERS = {
+    *("update", "sub", "search", "match", "fullmatch", "finditer", "findall", "start", "end", "span", "groups"),
+    *("Symbol", "name", "normalize", "get_close_matches", "escape"),
+}
+"""Methods of tokens, of regular expressions, and of modules."""
 _METHODS = {
+    "setdefault",
     *(
         "strip",
         "lstrip",

@@ -48,6 +48,7 @@ const py_methods_removeprefix = py.methods.removeprefix;
 const py_methods_removesuffix = py.methods.removesuffix;
 const py_methods_replace = py.methods.replace;
 const py_methods_rstrip = py.methods.rstrip;
+const py_methods_setdefault = py.methods.setdefault;
 const py_methods_split = py.methods.split;
 const py_methods_startswith = py.methods.startswith;
 const py_methods_strip = py.methods.strip;
@@ -486,6 +487,7 @@ const LONGEST = 9000;
 const LONGEST_NUMBER = 15;
 const LONGEST_WORD = 60;
 const DEEPEST = 40;
+const MOST_INTEGRALS = 20;
 const _TOO_LONG = new Map(Object.entries({ "'{9}": "more than 8 primes stand here", "[A-Za-z0-9_\\u0302-\\u0307]{240}": "a word has more than 60 letters" }));
 const _OPERAND_ENDS = new Set("NAME NUMBER PI RAISED RBRACE RPAR RSQB _BAR_CLOSE _END_MATRIX _NORM_CLOSE".split(' '));
 const _OPERAND_STARTS = new Set("EULER LBRACE LPAR LSQB NAME NUMBER PI RAISED SLASH _FRACTION _ROOT".split(' '));
@@ -678,9 +680,13 @@ out = py_iadd(out, (py_t(kind) ? [(!py_eq(kind, token.type) ? token.update({ typ
 return out;
 }
  _integrals(tokens) {
-let bounds, comma, inside, k, last, lower, partner, parts, size, start, upper, variable;
+let bounds, comma, inside, k, last, lower, many, partner, parts, size, start, upper, variable;
 const self = this;
 
+many = py_item(py_list(py_gen(tokens, (token) => token, (token) => py_eq(token.type, "INTEGRAL"))), py_slice(MOST_INTEGRALS, null, null));
+if (py_t(many)) {
+self.refuse(`more than ${py_str(MOST_INTEGRALS)} integrals stand here; write them in several texts`, py_item(many, 0));
+}
 for (start of py_iter(py_range((py_len(tokens) - 1), -1, -1))) {
 if (!py_eq(py_item(tokens, start).type, "INTEGRAL")) {
 continue;
@@ -958,7 +964,7 @@ return "";
 if ((py_any(py_gen(words, (word) => py_in("hat", word))) && py_in(key(`${py_str(letter)}hat`), self.known))) {
 return key(`${py_str(letter)}hat`);
 }
-known = first.setdefault(letter, words);
+known = py_methods_setdefault(first, letter, words);
 return py_add(letter, py_methods_rstrip(py_next(py_gen(words, (word) => word, (word) => !py_in(word, known)), ""), "0123456789"));
 }
  _only_times(inner) {

@@ -176,6 +176,10 @@ const METHODS = {
   values: (x) => [...x.values()],
   keys: (x) => [...x.keys()],
   get: (x, key, other = null) => (x.has(plain(key)) ? x.get(plain(key)) : other),
+  setdefault(x, key, other = null) {
+    if (!x.has(plain(key))) x.set(plain(key), other);
+    return x.get(plain(key));
+  },
   add: (x, value) => void x.add(plain(value)),
   fromkeys: (x, keys, value = null) => new Map([...py.iter(keys)].map((key) => [plain(key), value])),
 };
