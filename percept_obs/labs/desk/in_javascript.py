@@ -43,7 +43,9 @@ def in_javascript(modules: Iterable[ModuleType], left_out: Iterable[str], known:
             elif isinstance(node, ast.Assign | ast.AnnAssign):
                 for name in [part.id for target in _targets(node) for part in _stored(target)]:
                     if name not in left_out and not name.startswith("__"):
-                        parts.append(f"const {name} = {literal(getattr(module, name))};")
+                        value = getattr(module, name)
+                        text = f"py.constant({name!r}, {str(isinstance(value, Mapping)).lower()})"
+                        parts.append(f"const {name} = {text if _is_long(value) else literal(value)};")
     exported = ", ".join(sorted(name for name in names if name not in left_out and name not in known))
     names_of = ", ".join(module.__name__ for module, _ in trees)
     head = f"// @ts-nocheck\n// Printed by Python from {names_of}: change those, not this.\n"
@@ -54,6 +56,24 @@ def in_javascript(modules: Iterable[ModuleType], left_out: Iterable[str], known:
     for name in used:
         text = re.sub(rf"\b{re.escape(name)}\b", name.replace(".", "_"), text)
     return "\n".join([head, *(f"const {name.replace('.', '_')} = {name};" for name in sorted(used)), text])
+
+
+def long_constants(modules: Iterable[ModuleType]) -> dict[str, Any]:
+    """Return dictionaries and regular expressions that the page has among its tables, by their names."""
+    found = {name: value for module in modules for name, value in vars(module).items() if _is_long(value)}
+    return {
+        name: value.pattern
+        if isinstance(value, re.Pattern)
+        else {k: True if callable(v) else v for k, v in value.items()}
+        for name, value in found.items()
+        if not name.startswith("__")
+    }
+
+
+def _is_long(value: Any) -> bool:
+    return (isinstance(value, Mapping) and len(value) > 10) or (
+        isinstance(value, re.Pattern) and len(value.pattern) > 60
+    )
 
 
 def literal(value: Any) -> str:
@@ -376,93 +396,25 @@ class _Printer(ast.NodeVisitor):
 
 
 _PYTHON = {
-    "pairwise",
-    *(
-        "len",
-        "any",
-        "all",
-        "sum",
-        "max",
-        "min",
-        "sorted",
-        "reversed",
-        "zip",
-    ),
-    *(
-        "enumerate",
-        "range",
-        "next",
-        "map",
-        "str",
-        "int",
-        "bool",
-        "list",
-        "tuple",
-    ),
-    *(
-        "set",
-        "dict",
-        "isinstance",
-        "hasattr",
-        "getattr",
-        "re",
-        "unicodedata",
-        "difflib",
-        "suppress",
-    ),
-    *("repr",),
+    *("all", "any", "bool", "dict", "difflib", "enumerate", "getattr", "hasattr"),
+    *("int", "isinstance", "len", "list", "map", "max", "min", "next"),
+    *("pairwise", "range", "re", "repr", "reversed", "set", "sorted", "str"),
+    *("sum", "suppress", "tuple", "unicodedata", "zip"),
 }
 _QUESTIONS = {
-    "any",
-    "all",
-    "isinstance",
-    "hasattr",
-    "startswith",
-    "endswith",
-    "isdigit",
-    "isalpha",
-    "isspace",
-    "isascii",
+    *("all", "any", "endswith", "hasattr", "isalpha", "isascii", "isdigit", "isinstance"),
+    *("isspace", "startswith"),
 }
 _OTHERS = {
-    *("update", "sub", "search", "match", "fullmatch", "finditer", "findall", "start", "end", "span", "groups"),
-    *("Symbol", "name", "normalize", "get_close_matches", "escape"),
+    *("Symbol", "end", "escape", "findall", "finditer", "fullmatch", "get_close_matches", "groups"),
+    *("match", "name", "normalize", "search", "span", "start", "sub", "update"),
 }
 """Methods of tokens, of regular expressions, and of modules."""
 _METHODS = {
-    "setdefault",
-    *(
-        "strip",
-        "lstrip",
-        "rstrip",
-        "split",
-        "join",
-        "startswith",
-        "endswith",
-        "removesuffix",
-        "removeprefix",
-    ),
-    *(
-        "replace",
-        "isdigit",
-        "isalpha",
-        "isspace",
-        "isascii",
-        "lower",
-        "count",
-        "index",
-        "append",
-    ),
-    *(
-        "pop",
-        "extend",
-        "items",
-        "values",
-        "keys",
-        "get",
-        "add",
-        "fromkeys",
-    ),
+    *("add", "append", "count", "endswith", "extend", "fromkeys", "get", "index"),
+    *("isalpha", "isascii", "isdigit", "isspace", "items", "join", "keys", "lower"),
+    *("lstrip", "pop", "removeprefix", "removesuffix", "replace", "rstrip", "setdefault", "split"),
+    *("startswith", "strip", "values"),
 }
 
 

@@ -8,7 +8,7 @@ from lark.grammar import NonTerminal, Rule, Terminal
 from lark.parsers.lalr_analysis import Shift
 
 from percept_obs.checking import building, limits, notation, refusing, spelling, tokens, words
-from percept_obs.labs.desk.in_javascript import in_javascript
+from percept_obs.labs.desk.in_javascript import in_javascript, long_constants
 from percept_obs.labs.shared.printed import Texts
 
 REFUSALS = {
@@ -32,6 +32,7 @@ GREEK = tuple(spelling.GREEK.split())
 _LAYOUT = ("DELIMITER", "PROSE", "NUMBERED", "COMMENT")
 
 _START = "lines"
+_READER = (refusing, spelling, tokens, notation, words)
 _BY_HAND = ("CannotRead", "_terminal", "lexed")  # in the page's own sources, with "key" and the tokens
 _LEFT_OUT = (*_BY_HAND, "parser", "_grammar", "Functions", "_NAMED", "_QUOTIENTS", "GREEK")
 
@@ -39,7 +40,7 @@ _LEFT_OUT = (*_BY_HAND, "parser", "_grammar", "Functions", "_NAMED", "_QUOTIENTS
 def reader() -> str:
     """Return what tells the names of a text apart, and what is said where it cannot, as JavaScript for the page."""
     known = (*_BY_HAND, "Token", "UnexpectedCharacters", "key", "sp")
-    return in_javascript((refusing, spelling, tokens, notation, words), _LEFT_OUT, known)
+    return in_javascript(_READER, _LEFT_OUT, known)
 
 
 def tables() -> Texts:
@@ -68,6 +69,7 @@ def tables() -> Texts:
         "start": table.start_states[_START],
         "end": table.end_states[_START],
         "layout": {name: spelling._terminal(name).pattern for name in _LAYOUT},
+        "constants": long_constants(_READER),
         "functions": {
             name: name if name in tokens._QUOTIENTS else function.__name__.lower()
             for name, function in tokens.FUNCTIONS.items()

@@ -8,6 +8,7 @@ const py_any = py.any;
 const py_bool = py.bool;
 const py_bound = py.bound;
 const py_compare = py.compare;
+const py_constant = py.constant;
 const py_del = py.del;
 const py_dict = py.dict;
 const py_difflib = py.difflib;
@@ -132,12 +133,12 @@ return "an operator or the end of the line is expected here";
 
 const ACCENTS = new Map(Object.entries({ "\u0302": "hat", "\u0304": "bar", "\u0307": "dot", "\u0303": "tilde" }));
 const _OVER = new Map(Object.entries({ "hat": "hat", "bar": "bar", "dot": "dot", "tilde": "tilde", "widehat": "hat", "widetilde": "tilde", "overline": "bar" }));
-const REPLACED = new Map(Object.entries({ "\u03b1": "alpha", "\u03b2": "beta", "\u03b3": "gamma", "\u03b4": "delta", "\u03b5": "epsilon", "\u03b6": "zeta", "\u03b7": "eta", "\u03b8": "theta", "\u03b9": "iota", "\u03ba": "kappa", "\u03bb": "lambda", "\u03bc": "mu", "\u03bd": "nu", "\u03be": "xi", "\u03bf": "omicron", "\u03c0": "pi", "\u03c1": "rho", "\u03c3": "sigma", "\u03c4": "tau", "\u03c5": "upsilon", "\u03c6": "phi", "\u03c7": "chi", "\u03c8": "psi", "\u03c9": "omega", "\u0393": "Gamma", "\u0394": "Delta", "\u0398": "Theta", "\u039b": "Lambda", "\u039e": "Xi", "\u03a0": "Pi", "\u03a3": "Sigma", "\u03a6": "Phi", "\u03a8": "Psi", "\u03a9": "Omega", "\u03f5": "epsilon", "\u03d1": "theta", "\u03d5": "phi", "\u03f1": "rho", "\u03d6": "pi", "\u2080": "0", "\u2081": "1", "\u2082": "2", "\u2083": "3", "\u2084": "4", "\u2085": "5", "\u2086": "6", "\u2087": "7", "\u2088": "8", "\u2089": "9", "\u2212": "-", "\u2013": "-", "\u00b7": "*", "\u22c5": "*", "\u00d7": "*", "\u2217": "*", "\u2032": "'", "\u2019": "'", "\u27e8": "(", "\u27e9": ")", "\u2260": "!=", "\u2264": "<=", "\u2265": ">=", "\u00bd": "(1/2)", "\u00bc": "(1/4)", "\u00be": "(3/4)", "\u2153": "(1/3)", "\u2154": "(2/3)", "\u2192": "\\implies ", "\u21d2": "\\implies ", "\u27f9": "\\implies ", "\u2234": "\\implies ", "\u02d9": "'", "\u2016": "||", "\u221a": "\\sqrt", "\u2211": "\\sum", "\u2261": "\\equiv", "\u2254": ":=", "\u225c": "\\triangleq", "\u1d40": "^{\\top}", "\u2033": "''", "\u2009": " ", "\u202f": " ", "\u00a0": " ", "\u2002": " ", "\u2003": " ", "\u2061": " ", "\u2062": " " }));
-const _RELATION = py_pattern("[=<>]|\\\\(neq?|leq?|geq?|lt|gt|equiv|triangleq|coloneqq)(?![A-Za-z])");
+const REPLACED = py_constant('REPLACED', true);
+const _RELATION = py_constant('_RELATION', false);
 const _FORMULA = py_pattern("[+*/^=<>()\\[\\]{}&\\\\]|(^|\\s)-|-(\\s|$)|[\\d_']\\w*\\s+\\w*[\\d_']");
-const _SIGN_ALONE = py_pattern("[\\s$`\\\\()\\[\\]]*([-+*/^]|plus|minus|times|over)[\\s$`\\\\()\\[\\]]*");
+const _SIGN_ALONE = py_constant('_SIGN_ALONE', false);
 const _WORD = py_pattern("(?<![\\w\\\\])[A-Za-z]{2,}(?!\\w)");
-const _VERB = py_pattern("\\s*([Ii]s|[Aa]re|[Hh]ave|[Dd]enotes?|[Ff]ollows|[Gg]ives?|[Yy]ields?|[Tt]hat|[Ww]hich)\\b");
+const _VERB = py_constant('_VERB', false);
 const _SAID = py_pattern("\\\\(text|textrm|mbox|mathrm)\\s*\\{([^{}]*)\\}");
 const _WORDS_OF_CASES = py_pattern("\\s*(for|if|when|otherwise|else)[,.]?\\s*|\\s*\\w+\\s*");
 const _NAMED_BY_COLON = py_pattern("[\\s{]*[A-Za-z]\\w*(dot|')\\s*:(?!=)[^=<>]*");
@@ -301,8 +302,8 @@ return key(py_add(py_add(plain, py_methods_join("", accents)), py_mul("dot", py_
 }
 
 const _DEE = "(?:d|\u2202|\\\\partial|\\\\mathrm\\s*(?:\\{\\s*d\\s*\\}|d)|\\\\rm\\s)";
-const _FRACTION = py_pattern("\\\\[dt]?frac\\s*\\{\\s*(?:d|\u2202|\\\\partial|\\\\mathrm\\s*(?:\\{\\s*d\\s*\\}|d)|\\\\rm\\s)(.*)\\}\\s*\\{\\s*(?:\\\\mathrm\\s*\\{\\s*d(.)\\s*\\}|(?:d|\u2202|\\\\partial|\\\\mathrm\\s*(?:\\{\\s*d\\s*\\}|d)|\\\\rm\\s)(.*))\\}");
-const _CALLS = py_pattern("(?:Derivative|diff|dot)\\s*\\(([^,]*?)(?:,\\s*t\\s*)?\\)|(.*)\\.diff\\(\\s*t\\s*\\)|(?:d|\u2202|\\\\partial|\\\\mathrm\\s*(?:\\{\\s*d\\s*\\}|d)|\\\\rm\\s)([^/]*)/.*");
+const _FRACTION = py_constant('_FRACTION', false);
+const _CALLS = py_constant('_CALLS', false);
 function rate_of(token) {
 let by, found, inner, name;
 
@@ -334,7 +335,7 @@ py_methods_append(found, key(`${py_str(py_item(quotient, 1))}dot`));
 return py_list(py_gen(py_methods_fromkeys(py_dict, found), (each) => each, (each) => !py_eq(each, name)));
 }
 
-const FUNCTIONS = new Map(Object.entries({ "sin": true, "cos": true, "tan": true, "asin": true, "acos": true, "atan": true, "sinh": true, "cosh": true, "tanh": true, "sech": true, "exp": true, "log": true, "sqrt": true, "sign": true, "abs": true, "sgn": true, "ln": true, "arctan": true, "arcsin": true, "arccos": true, "Abs": true, "fabs": true, "sec": true, "csc": true, "cot": true, "coth": true }));
+const FUNCTIONS = py_constant('FUNCTIONS', true);
 const WRAPPERS = new Set("ImmutableMatrix Matrix array expand factor simplify".split(' '));
 const OPENING = new Map(Object.entries({ "LPAR": "RPAR", "LBRACE": "RBRACE", "LSQB": "RSQB", "_BAR_OPEN": "_BAR_CLOSE", "_NORM_OPEN": "_NORM_CLOSE", "_MATRIX": "_END_MATRIX", "_CASES": "_END_CASES" }));
 const AROUND = new Map(Object.entries({ "_MATRIX": "_END_MATRIX", "_CASES": "_END_CASES", "LBRACE": "RBRACE" }));
@@ -826,7 +827,7 @@ const _CONTINUES = new Set("COMMA EQUAL LBRACE LPAR LSQB MINUS PLUS RELATION SLA
 const _GOES_ON = new Set("EQUAL MINUS PLUS RBRACE RELATION RPAR RSQB SLASH _POWER _TIMES".split(' '));
 const _N = "NAME:(\\w+)";
 const _MANY = "NAME:(\\w+)(?: (?:_ROW|COMMA|_LINE|_CELL) NAME:(\\w+))*";
-const _LABEL = py_pattern("(D_DT )?(NAME:(\\w+)( _POWER (LBRACE )?NAME:T( RBRACE)?)?|NAME:J LPAR NAME:(\\w+) RPAR|(LSQB |LPAR )?_MATRIX NAME:(\\w+)(?: (?:_ROW|COMMA|_LINE|_CELL) NAME:(\\w+))* _END_MATRIX( RSQB| RPAR)?|(LSQB|LPAR) NAME:(\\w+)(?: (?:_ROW|COMMA|_LINE|_CELL) NAME:(\\w+))* (RSQB|RPAR)( _POWER (LBRACE )?NAME:T( RBRACE)?)?|LSQB LSQB NAME:(\\w+) RSQB( COMMA LSQB NAME:(\\w+) RSQB)* RSQB) EQUAL");
+const _LABEL = py_constant('_LABEL', false);
 class Words extends Notation {
  tokens(strict = true) {
 let each, found, lines, passes;

@@ -53,7 +53,7 @@ class Pattern {
   }
 
   made(flags, around = (text) => text) {
-    return new RegExp(around(this.pattern), flags);
+    return new RegExp(around(this.pattern ?? lexer.tables.constants[this.name]), flags);
   }
 
   get all() {
@@ -191,6 +191,8 @@ function trimmed(text, signs, at) {
 }
 
 const BOUND = new WeakMap();
+/** Dictionaries that are filled once the tables are there. */
+const FILLED = new Map();
 
 export const py = {
   /** Python's truth of a value. */
@@ -251,6 +253,12 @@ export const py = {
   and: (one, other) => new Set([...one].filter((each) => py.in(each, other))),
   key: plain,
   pattern,
+  /** A dictionary or a regular expression that is among the tables. */
+  constant(name, isMap) {
+    const made = isMap ? new Map() : Object.assign(new Pattern(null), { name });
+    if (isMap) FILLED.set(name, made);
+    return made;
+  },
   slice: (start, stop, step) => new Slice(start, stop, step),
   item(x, k) {
     if (k instanceof Slice) return sliced(x, k);
@@ -346,6 +354,8 @@ const lexer = { tables: null, words: () => [] };
 /** Let words be read by these tables. */
 export function useTables(tables, words) {
   Object.assign(lexer, { tables, words });
+  for (const [name, known] of FILLED)
+    if (!known.size) for (const [key, value] of Object.entries(tables.constants[name])) known.set(key, value);
 }
 
 export const lexed = (text) => lexer.words(plain(text));
