@@ -95,6 +95,7 @@ def cost(text):
     return time.thread_time() - began
 
 
+@pytest.mark.slow
 def test_no_text_takes_longer_than_the_limit():
     found = [
         (round(seconds, 2), family, text[:80])

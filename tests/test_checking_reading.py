@@ -326,6 +326,7 @@ def test_what_is_the_same_is_told_from_what_is_not(one, other, verdict):
     assert same(explicit(one), explicit(other)) is verdict
 
 
+@pytest.mark.slow
 def test_whatever_is_typed_is_read_or_refused():
     words = r"""
         y1 y2 yhat1 a13 + - * / ^ ( ) [ ] { } , ; = < != 2 0 1/2 sin sqrt log( e^ pi ' ² ^T \frac \sqrt \left[ \right]

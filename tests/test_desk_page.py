@@ -20,6 +20,7 @@ def marks(node, texts, sheet=RATE, row=21):
     return ["refused" if line["refused"] else line["mark"] for line in found]
 
 
+@pytest.mark.slow
 def test_python_and_the_page_judge_lines_alike(node):
     chosen = list(lines(FORMULAS, seed=26))
     python = [by_python(sheet, row, text) for sheet, _, row, text in chosen]

@@ -22,6 +22,7 @@ def outcome(entry):
     return {True: RIGHT, False: "judged wrong", None: "cannot tell"}[right], ""
 
 
+@pytest.mark.slow
 def test_right_formulas_are_read_and_judged_right():
     found = [(entry, *outcome(entry)) for entry in entries("right")]
     counts = Counter(verdict for _, verdict, _ in found)
@@ -53,6 +54,7 @@ NOT_ASKED = {
 }
 
 
+@pytest.mark.slow
 def test_prints_of_the_papers_are_read():
     refused = {}
     for place, text in prints().items():
