@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from lark.grammar import NonTerminal, Rule, Terminal
@@ -54,20 +55,21 @@ def tables() -> Texts:
     parser = spelling.parser()
     lexer, table = parser.parser.lexer, parser.parser.parser._parse_table
     rules: dict[Rule, int] = {}
+    number = _in_order(table.states, table.start_states[_START])
     states = [
         {
-            str(symbol): target if action is Shift else -1 - rules.setdefault(target, len(rules))
-            for symbol, (action, target) in sorted(state.items())
+            str(symbol): number[target] if action is Shift else -1 - rules.setdefault(target, len(rules))
+            for symbol, (action, target) in sorted(table.states[state].items())
         }
-        for _, state in sorted(table.states.items())
+        for state in number
     ]
     return {
         "terminals": [[str(t.name), t.pattern.to_regexp()] for t in lexer.scanner.terminals],
         "ignored": sorted(map(str, lexer.ignore_types)),
         "rules": [_rule(rule) for rule in rules],
         "states": states,
-        "start": table.start_states[_START],
-        "end": table.end_states[_START],
+        "start": number[table.start_states[_START]],
+        "end": number[table.end_states[_START]],
         "layout": {name: spelling._terminal(name).pattern for name in _LAYOUT},
         "constants": long_constants(_READER),
         "functions": {
@@ -81,6 +83,18 @@ def tables() -> Texts:
             "size": limits.LARGEST,
         },
     }
+
+
+def _in_order(states: Mapping[Any, Mapping[str, Any]], start: Any) -> dict[Any, int]:
+    """Return a number for each state in the order in which they are reached, for lark's own differ from run to run."""
+    number = {start: 0}
+    queue = [start]
+    for state in queue:
+        for _, (action, target) in sorted(states[state].items()):
+            if action is Shift and target not in number:
+                number[target] = len(number)
+                queue.append(target)
+    return number
 
 
 def _rule(rule: Rule) -> dict[str, Any]:
