@@ -47,7 +47,7 @@ SAID = {
     "unknown": CANNOT_BE_TOLD,
     "right": "Right{notes}.",
     "right so far": "Right so far, {count} of {asked} lines{notes}.",
-    "alone": "Which slip it is only Python can say: open the desk in a notebook.",
+    "alone": "Python names the slip: open the desk in a notebook.",
     "unknown system": "Only Python derives this system: open the desk in a notebook, or clear the name.",
     "one formula": "one formula is asked for here, without other equations or relations",
     "other line": "this is the line for {name}; type its right side only",
