@@ -11,7 +11,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 STANDS = "() => [...(window.perceptObsLabs ?? [])].some((lab) => lab.shown && !lab.pending)"
 WRONG = MISTAKES["wrong sign"][0]
-ONLY_PYTHON = "Which slip it is only Python can say: open the desk in a notebook."
+ONLY_PYTHON = "Python names the slip: open the desk in a notebook."
 
 
 @pytest.fixture

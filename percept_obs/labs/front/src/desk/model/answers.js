@@ -9,7 +9,7 @@ import { markupOf } from "./markup.js";
 import { grownOf, pictureOf } from "./arrows.js";
 
 const [WRONG, RIGHT] = ["wrong", "right"];
-/** The last hint, which only Python can say whether there is. */
+/** The last hint; Python says whether there is one. */
 const LAST = 4;
 
 /** The name by which a sheet is found; it holds what the sheet depends on. */
