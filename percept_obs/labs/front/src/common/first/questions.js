@@ -62,9 +62,9 @@ export class Questions {
     return Boolean(this.open) && question.said !== null && same(question.of, this.lab.settings);
   }
 
-  /** True once the answer was watched. */
+  /** True once the answer was watched, and is what is drawn. */
   get telling() {
-    return this.answered && !this.clock.secret;
+    return this.answered && !this.clock.secret && !this.lab.late;
   }
 
   ask(name) {

@@ -348,6 +348,7 @@ export class Lab extends LabBase {
 
   draw() {
     const { shown, ghost, theme } = this;
+    theme.resting = this.face === "workbench" && !this.held;
     if (this.face === "first" && !shown.problem && shown.time.length) {
       this.first.draw(shown, ghost, theme);
       this.stale = false;
