@@ -1,14 +1,19 @@
 // What maps of the first screen have in common: ground, and a camera.
 
+/** Lines in a direction at most, whatever the numbers are. */
+const MOST_LINES = 500;
+
 /** A line for each metre, or for more where these would be too near; `at` is the map's middle and scale. */
 export function drawGround(view, [cx, cz, scale], { x, y }, theme) {
   const { width, height } = view;
-  const step = [1, 5, 10, 50, 100, 1000].find((metre) => metre * scale >= 9) ?? 1e4;
+  const step = [1, 5, 10, 50, 100, 1000].find((metre) => metre * scale >= 9) ?? 10 ** Math.ceil(Math.log10(9 / scale));
   const line = (from, to, k) => view.line([from, to], theme.line, { width: 1, alpha: k % 5 ? 0.18 : 0.5 });
-  for (let k = Math.ceil((cx - width / scale) / step); k * step < cx + width / scale; k++)
-    line([x(k * step), 0], [x(k * step), height], k);
-  for (let k = Math.ceil((cz - height / scale) / step); k * step < cz + height / scale; k++)
-    line([0, y(k * step)], [width, y(k * step)], k);
+  const about = (/** @type {number} */ middle, /** @type {number} */ reach) => {
+    const first = Math.ceil((middle - reach) / step);
+    return Array.from({ length: Math.min(Math.ceil((2 * reach) / step), MOST_LINES) }, (_, k) => first + k);
+  };
+  for (const k of about(cx, width / scale)) line([x(k * step), 0], [x(k * step), height], k);
+  for (const k of about(cz, height / scale)) line([0, y(k * step)], [width, y(k * step)], k);
 }
 
 /** A camera from above, turned from straight ahead. */

@@ -13,6 +13,9 @@ export const RIM = 4;
 /** Pixels from one box to the next along a line from which labels keep away, and at most of its length. */
 const [EACH, LONGEST] = [8, 2000];
 
+/** Pixels from the corner of a picture beyond which nothing is drawn. */
+const REACH = 5000;
+
 /**
  * @typedef {object} Label
  * @property {string} id       by which it stays on the side where it was
@@ -70,12 +73,16 @@ export class LabelledPicture extends Picture {
   line(points, colour, { width = 1.5, dash = /** @type {number[]} */ ([]), alpha = 1 } = {}) {
     const { pen } = this;
     pen.beginPath();
-    let begun = false;
-    for (const [x, y] of points) {
-      const there = !Number.isNaN(x + y);
-      if (there && begun) pen.lineTo(x, y);
-      else if (there) pen.moveTo(x, y);
-      begun = there;
+    let [before, begun] = [/** @type {number[] | null} */ (null), false];
+    for (const point of points) {
+      const there = point.every(Number.isFinite);
+      const part = there && before && reached(before, point);
+      if (part) {
+        if (!begun || part[0] !== before) pen.moveTo(part[0][0], part[0][1]);
+        pen.lineTo(part[1][0], part[1][1]);
+      }
+      begun = Boolean(part) && part[1] === point;
+      before = there ? point : null;
     }
     pen.strokeStyle = colour;
     pen.lineWidth = width;
@@ -215,6 +222,22 @@ export class LabelledPicture extends Picture {
 /** Where the last part of a text begins, after a comma, a colon or a semicolon; negative if it has one part only. */
 function lastStop(text) {
   return text.search(/[,:;][^,:;]*$/);
+}
+
+/** The part of a way that lies within reach of a picture, or null: a page takes minutes to dash a very long line. */
+function reached(from, to) {
+  let [begin, end] = [0, 1];
+  for (const i of [0, 1]) {
+    for (const side of [-1, 1]) {
+      const [room, along] = [REACH - side * from[i], side * (to[i] - from[i])];
+      if (along > 0) end = Math.min(end, room / along);
+      else if (along < 0) begin = Math.max(begin, room / along);
+      else if (room < 0) return null;
+    }
+  }
+  if (begin > end) return null;
+  const at = (part) => from.map((value, i) => value + part * (to[i] - from[i]));
+  return [begin === 0 ? from : at(begin), end === 1 ? to : at(end)];
 }
 
 /** Return true if boxes overlap. */
