@@ -3,7 +3,7 @@
 /** How many primes there are, and how many points must agree; of roots and signs more, for each turns at random. */
 const [PRIMES, POINTS, TURNED] = [3, 3, 60];
 /** How many real points must agree, and the largest relative error of a value that counts. */
-const [REAL_POINTS, TRUST] = [24, 1e-6];
+const [REAL_POINTS, TRUST] = [120, 1e-6];
 const TRIALS = 320;
 const BITS = 61n;
 const EPSILON = 2 ** -52;
