@@ -94,7 +94,7 @@ def by_python(sheet, row, text):
 
 
 def by_the_page(node, chosen):
-    """The same of lines, given as name, row and text, as the page finds it."""
+    """Marks of lines, given as name, row and text, as the page finds them."""
     task = {"texts": base64.b64encode(file_of("desk_lab").read_bytes()).decode(), "lines": chosen}
     return [
         {"mark": line["mark"], "refused": bool(line["refusal"]), "markup": line["markup"]}

@@ -1,4 +1,4 @@
-"""What people write and papers print is read, and judged right where it is; what has two meanings is asked back."""
+"""Right formulas that people write and papers print are read and judged right; two meanings are asked back."""
 
 import re
 from collections import Counter

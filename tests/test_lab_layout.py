@@ -78,7 +78,7 @@ SMALL = """() => [...document.querySelectorAll(
     const { width, height } = target.getBoundingClientRect();
     return Math.min(width, height) < 23.9 ? [`${node.dataset.control ?? node.textContent}: ${width} x ${height}`] : [];
 })"""
-"""What is too small for a finger: less than 24 pixels."""
+"""Targets that are too small for a finger: less than 24 pixels."""
 TABS = {"observer": ["causes"], "structure": [], "points": []}
 """More tabs beside the pictures than all have."""
 

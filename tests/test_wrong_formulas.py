@@ -14,7 +14,7 @@ from percept_obs.checking.explaining import wrong_terms
 
 @dataclass(frozen=True)
 class Found:
-    """What a review of a wrong formula says, and the seconds of computing that it took."""
+    """Words of a review of a wrong formula, and the seconds of computing that it took."""
 
     refused: bool
     located: bool

@@ -88,7 +88,7 @@ def points(*formulas: sp.Basic, exact: bool = False, opaque: bool = False) -> It
 
 @dataclass(frozen=True)
 class Decision:
-    """Whether a claim is true, None if it cannot be told; whether that is proved; and for which values it holds.
+    """Answer to a claim: its truth, None if it cannot be told, if that is proved, and the values for which it holds.
 
     A "no" is always certain.  A "yes" that is not proved is one of values at random places of all sizes.
     """
@@ -138,7 +138,7 @@ def decided(one: sp.Expr, other: sp.Expr) -> Decision:
 
 _JUMPS = (sp.sign, sp.Heaviside, sp.Piecewise, sp.floor, sp.ceiling)
 _NUMBERS = (sp.NumberSymbol, sp.I, sp.Abs, sp.Max, sp.Min, *_JUMPS)
-"""What may be related to others in ways that are not known."""
+"""Functions that may be related to others in ways that are not known."""
 
 
 def same(one: sp.Expr, other: sp.Expr) -> bool | None:

@@ -1,4 +1,4 @@
-"""What a reader says when it cannot read: where, what is there, what is expected."""
+"""Refusals of a reader: where it cannot read on, what stands there, what is expected."""
 
 import unicodedata
 from collections.abc import Iterable

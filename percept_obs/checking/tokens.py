@@ -35,7 +35,7 @@ OPENING = {
     "_CASES": "_END_CASES",
 }
 AROUND = {kind: OPENING[kind] for kind in ("_MATRIX", "_CASES", "LBRACE")}
-"""What may stand around equations."""
+"""Brackets that may stand around equations."""
 
 
 SUMMAND_ENDS = {"PLUS", "MINUS", "EQUAL", "RELATION", "_LINE", "COMMA", "_CELL", "_ROW", "END", *CLOSING}

@@ -212,7 +212,7 @@ class Entry:
 
     @property
     def _said(self) -> str:
-        """What is to be said of a formula that is the printed one and not true."""
+        """Words on a formula that is the printed one and not true."""
         what = {Verdict.FALSE: "it is false as stated", Verdict.DEPENDS: "it depends"}.get(self.expected)
         return f"as the paper has it, but {what}: {self.note}" if what and self.printed else ""
 

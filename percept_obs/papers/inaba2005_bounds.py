@@ -132,7 +132,7 @@ def square_integrable(printed: Printed) -> Finding:
 
 
 def two_lines(printed: Printed) -> Finding:
-    """What the integrated rate of V leaves for V >= 0, and x^T P x <= |P| |x|^2, with equality along an eigenvector."""
+    """Bounds by V >= 0 in its integrated rate, and by x^T P x <= |P| |x|^2, with equality along an eigenvector."""
     first, second = printed
     _, kept = INTEGRATED
     left = first.lhs == SEEN and vanishes(first.rhs - SEEN - kept.rhs / 2)

@@ -27,7 +27,7 @@ REFUSALS = {
     "large": "this is too large to be compared; there must be a smaller way to write it",
     "python": "only Python reads this: open the desk in a notebook",
 }
-"""What the page says where it reads a line and no formula comes of it; where Python answers, it says more."""
+"""Refusals of the page where it reads a line and no formula comes of it; where Python answers, it says more."""
 
 GREEK = tuple(spelling.GREEK.split())
 _LAYOUT = ("DELIMITER", "PROSE", "NUMBERED", "COMMENT")
