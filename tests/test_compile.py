@@ -7,12 +7,14 @@ import subprocess
 import sys
 from dataclasses import fields
 from functools import cache, partial
+from pathlib import Path
 
 import numpy as np
 import pytest
 import sympy as sp
 from examples import BOTH, NOISY, ON_SPHERE, ONE, ZERO
 from javascript import solve_in_node
+from numba.core.caching import IndexDataCacheFile
 from refusals import refuses
 from scipy.integrate import solve_ivp
 
@@ -21,6 +23,7 @@ from percept_obs import Camera, Uniform, ibo, record, scenarios, track
 from percept_obs.compile import NotCompilable, Table, integrator, kernels, machine_code, solve, source, vector_functions
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH
+from percept_obs.compile.machine_code import NotKept
 from percept_obs.compile.rows import by_row
 from percept_obs.figures import look
 from percept_obs.labs.desk import tables
@@ -248,13 +251,41 @@ def test_a_loop_is_kept_as_a_file_that_holds_its_text(tmp_path, monkeypatch):
     assert file.read_text().endswith(text)
 
 
-@pytest.mark.parametrize("refusal", ["a file in the way", "no right to write"])
-def test_where_nothing_can_be_kept_the_loop_compiles_all_the_same(tmp_path, monkeypatch, refusal):
+def full(*_, **__):
+    raise OSError(28, "No space left on device")
+
+
+@pytest.mark.parametrize("refusal", ["a file in the way", "a full disk", "a disk that fills later"])
+def test_where_nothing_can_be_kept_the_loop_compiles_all_the_same_and_says_so_once(tmp_path, monkeypatch, refusal):
     place = tmp_path / "place"
-    place.touch() if refusal == "a file in the way" else monkeypatch.setattr(os, "access", lambda *_: False)
+    if refusal == "a file in the way":
+        place.touch()
+    elif refusal == "a full disk":
+        monkeypatch.setattr(Path, "write_bytes", full)
+    else:
+        monkeypatch.setattr(IndexDataCacheFile, "_open_for_write", full)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(place / "new"))
-    assert machine_code(f"def run(x):\n    return x / 3.0  # {refusal}\n", "(float64,)")(6.0) == 2.0
-    assert not place.is_dir()
+    texts = [f"def run(x):\n    return x / {number}.0  # {refusal}\n" for number in (2, 3)]
+    with pytest.warns(NotKept, match=r"compiled again the next time; .* free the disk") as told:
+        halved, third = (machine_code(text, "(float64,)") for text in texts)
+    assert (halved(6.0), third(6.0)) == (3.0, 2.0)
+    assert len(told) == 1
+    assert not [*tmp_path.rglob("*.py"), *tmp_path.rglob("*.nbi")]
+
+
+@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+def test_machine_code_that_was_cut_off_is_told_and_mended(tmp_path, monkeypatch, suffix):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))  # which numba read when it was imported
+    text = f"def run(x):\n    return x / 5.0  # {suffix}\n"
+    machine_code.__wrapped__(text, "(float64,)")
+    (kept,) = tmp_path.rglob(f"*.{suffix}")
+    kept.write_bytes(kept.read_bytes()[:40])
+    with pytest.warns(NotKept):
+        assert machine_code.__wrapped__(text, "(float64,)")(5.0) == 1.0
+    for misses in (1, 0):
+        again = machine_code.__wrapped__(text, "(float64,)")
+        assert (again(5.0), sum(again.stats.cache_misses.values())) == (1.0, misses)
 
 
 @pytest.mark.parametrize(

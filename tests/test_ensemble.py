@@ -1,6 +1,7 @@
 """An ensemble says of every run what `track` says of it, whatever varies, in any chunks, and keeps what is done."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -30,7 +31,7 @@ from percept_obs import (
 from percept_obs.observers import OBSERVERS
 from percept_obs.recording.many import with_numbers
 from percept_obs.studies import chunks
-from percept_obs.studies.chunks import Unfinished
+from percept_obs.studies.chunks import Unfinished, open_store
 from percept_obs.studies.plan import STATUS, Plan
 from percept_obs.studies.statistics import OUTCOMES
 from percept_obs.validation import environment
@@ -240,11 +241,30 @@ def test_an_interrupted_ensemble_keeps_what_is_done_and_goes_on(tmp_path, monkey
         ensemble(EQ35, ibo(BOTH, lyapunov=-0.4), over, duration=0.5, store=store)
 
 
+def test_a_store_is_written_by_one_ensemble_at_a_time(tmp_path):
+    store = tmp_path / "kept.zarr"
+    with open_store(store, "one", (4, 2), 10**15) as stored:
+        assert stored.chunks == (4, 2)
+        with pytest.raises(ValueError, match=r"is not free .*: another ensemble writes to it now"):
+            ensemble(EQ35, ibo(BOTH), duration=0.1, store=store)
+    assert [path.name for path in tmp_path.iterdir()] == ["kept.zarr"]
+    with open_store(store, "one", (4, 2), 1) as stored:
+        assert stored.shape == (4, 2)
+    with pytest.raises(ValueError, match="holds something else"), open_store(store, "other", (4, 2), 1):
+        pass
+
+
 test_what_makes_no_sense_is_refused = refuses(
     lambda changes: ensemble(EQ35, ibo(BOTH), **({"duration": 1.0} | changes)),
     ({"over": {"gian": [1.0]}}, "over has gian, which cannot vary here; there are gain, "),
     ({"over": {"gain": [1.0, -3.0]}}, "gain = -3 is out of range"),
     ({"over": {"gain": []}}, "finite numbers"),
+    ({"over": {"gain": range(10**9)}}, r"1e\+09 entries of a range"),
+    ({"over": {"gain": ["1", "2"]}}, "over gain is the list .* expected real numbers"),
+    ({"step": 1e-12}, r"1e\+12 steps"),
+    ({"store": ""}, "the store '' is no Zarr store; name a new folder"),
+    ({"store": Path(__file__)}, "test_ensemble.py' is no Zarr store"),
+    ({"store": Path(__file__).parent}, "tests' is no Zarr store"),
     ({"over": {"gain": [np.nan]}}, "finite numbers"),
     ({"over": {"period": [0.01, 9.0]}}, "holds no two samples"),
     ({"over": {"dropout": [1.0]}}, "below 1"),

@@ -99,6 +99,20 @@ def test_a_killed_sweep_goes_on_where_it_was(alone, tmp_path):
         ('scenario = "ma2005_eq35"\nobserver = "x"\nstore = "a.zarr"', "no observer 'x'; there are identifier_based"),
         ('scenario = "ma2005_eq35"\nobserver = "identifier_based"', "needs store"),
         ('scenario = "ma2005_eq35"\nobserver = "identifier_based"\nstore = "a.zarr"\nduration = "long"', "duration"),
+        *(
+            (f'scenario = "planar"\nobserver = "identifier_based"\nstore = "a.zarr"\n{wrong}', message)
+            for wrong, message in (
+                ("gains = {form = 1}", "no gain form"),
+                ('gains = {gain = "x"}', "gains is the dict"),
+                ("over = [1]", "over is the list [1]; expected a mapping"),
+                ("over = {gain = {from = 1.0, to = 2.0, count = 1e10}}", "count for gain is the number 1"),
+                ("over = {gain = {from = 1.0, to = 2.0, count = 10000000000}}", "1e+10 values of gain"),
+                ("over = {gain = {from = 1.0, to = 2.0, count = -1}}", "give finite numbers"),
+                ('outputs = "y1"', "put it into a list"),
+            )
+        ),
+        ('scenario = ["x"]\nobserver = "identifier_based"\nstore = "a.zarr"', "scenario is the list ['x']"),
+        ('scenario = "planar"\nobserver = "identifier_based"\nstore = 5', "store is the number 5; expected text"),
     ],
 )
 def test_a_file_that_makes_no_sense_or_is_not_there_is_refused(tmp_path, text, message, capsys):

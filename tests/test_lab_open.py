@@ -315,6 +315,9 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
     lab = points_lab(form, **OF_POINTS)
     assert (lab.settings["state"], len(lab.settings["points"])) == ("own", 2)
     tasks = [lab.settings, lab.check({**lab.settings, "weight": "riccati", "size": 0.02, "hidden": [None, [0.0, 0.4]]})]
+    numbers = independent_points(affine([[0, 0.1, 0], [0, 0, 0], [0, 0, 1 / 3]], [0.3, 0.1, 0.2]), 2)
+    plain = points_lab(numbers, **OF_POINTS)
+    assert len([*assert_same_points_and_code(node, plain, [plain.settings], numbers)]) == 1
     assert len([*assert_same_points_and_code(node, lab, tasks, form)]) == len(tasks)
     for brought, settings, reason in (
         (of_samples(STAMPS[1:]), {}, "from 0.013 to 0.3 s, but a run of the lab begins at 0 s"),
@@ -324,6 +327,8 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
         (PointsForm(linear(states=3), np.eye(3)[None]), {}, "no expression in time for a11, a12"),
         (form, {"points": [[0.0, 0.0, 2.0]]}, "there are 1 points; it must be 2"),
         (form, {"motion": "w1 = t"}, "it must be empty with your own form"),
+        (PerspectiveSystem(affine(), pinhole()).measure("y1"), {}, r"form is a CanonicalForm; expected a PointsForm"),
+        (5, {}, "form is the number 5; expected a PointsForm"),
     ):
         with pytest.raises(ValueError, match=reason):
             points_lab(brought, **settings)

@@ -6,11 +6,13 @@ import hashlib
 import os
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, Literal
-from uuid import uuid4
+
+from percept_obs.validation import warn, write_whole
 
 Rounding = Literal["exact", "contracted", "batch"]
 
@@ -20,6 +22,10 @@ OPTIONS: dict[Rounding, dict[str, Any]] = {
     "batch": {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True},
 }
 """Options of numba: rounding as in Python; a product and a sum rounded once, in no other order; and this in threads."""
+
+
+class NotKept(UserWarning):
+    """Machine code cannot be kept, or what was kept cannot be read."""
 
 
 # Not in another thread: numba sets Python's warning filters while it compiles, and all threads share them.
@@ -35,21 +41,38 @@ def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Cal
 
     options = OPTIONS[rounding]
     text = f'"""A loop of percept_obs, which numba compiles with {options}."""\n\n{text}'
-    content = text.encode()
     folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("percept_obs"))
-    file = folder / f"loop_{hashlib.sha256(content).hexdigest()[:32]}.py"
-    nearest = next(place for place in (folder, *folder.parents) if os.path.exists(place))
-    kept = nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)
-    if kept and not file.exists():
-        folder.mkdir(parents=True, exist_ok=True)
-        new = file.with_suffix(f".{uuid4().hex}")
-        new.write_bytes(content)
-        new.replace(file)  # whole, for other processes may read it
-    module = sys.modules[file.stem] = ModuleType(file.stem)  # where numba looks when it takes the code from the file
-    exec(compile(text, str(file) if kept else "<printed>", "exec"), vars(module))
-    *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
-    inside = rounding == "batch"  # of the loop, for a call stops vector instructions
-    for name in others:
-        setattr(module, name, numba.njit(forceinline=inside, **options)(getattr(module, name)))
-    compiled: Callable[..., Any] = numba.njit([signature], cache=kept, **options)(getattr(module, last))
-    return compiled
+    file = folder / f"loop_{hashlib.sha256(text.encode()).hexdigest()[:32]}.py"
+
+    def compiled(place: str, kept: bool) -> Callable[..., Any]:
+        module = sys.modules[file.stem] = ModuleType(file.stem)  # where numba looks for the code of a file
+        exec(compile(text, place, "exec"), vars(module))
+        *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
+        inside = rounding == "batch"  # of the loop, for a call stops vector instructions
+        for name in others:
+            setattr(module, name, numba.njit(forceinline=inside, **options)(getattr(module, name)))
+        found: Callable[..., Any] = numba.njit([signature], cache=kept, **options)(getattr(module, last))
+        return found
+
+    try:
+        if not file.exists():
+            folder.mkdir(parents=True, exist_ok=True)
+            write_whole(file, text.encode())  # other processes may read it
+        return compiled(str(file), True)
+    except Exception as error:  # a full disk, or what was kept is cut off: unpickling it may raise anything
+        with suppress(OSError):
+            for each in folder.rglob(f"{file.stem}.*"):
+                each.unlink()
+        found = compiled("<printed>", False)
+        _tell(folder, type(error).__name__)
+        return found
+
+
+@lru_cache  # so that it warns once
+def _tell(folder: Path, reason: str) -> None:
+    warn(
+        NotKept(
+            f"machine code is not kept in {folder} ({reason}), so that it is compiled again the next time; what could "
+            "not be read there is removed: free the disk, or set NUMBA_CACHE_DIR to a folder that can be written to"
+        )
+    )

@@ -17,7 +17,7 @@ from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import POINT
-from percept_obs.validation import checked, positive
+from percept_obs.validation import checked, limit, positive
 
 VELOCITIES = (("v_c1", "v_c2", "v_c3"), ("b1", "b2", "b3"))
 """Names of the velocity that is steered, of a rigid and of an affine motion."""
@@ -197,6 +197,8 @@ def steered(
     turning = gain * found.turning.xreplace(dict(zip(surface.image_coordinates, surface.image, strict=True)))
     fixed = {s: value for s, value in {**motion.values, **surface.values}.items() if s not in found.velocity}
     rate = vectorised(state, [*(motion.A * sp.ImmutableMatrix(POINT) + motion.b), *turning], fixed)
+    size = scenario.duration / step * len(motion.parameters)
+    limit(size, "numbers of a velocity", "take a longer step or a shorter duration of the scenario")
     times = step * np.arange(int(np.ceil(scenario.duration / step - 1e-9)) + 2, dtype=float)  # beyond the end
     refused = ValueError(
         f"steered with gain = {gain} and step = {step} the motion leaves every bound or turns too fast within "

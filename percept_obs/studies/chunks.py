@@ -6,7 +6,8 @@ import copy
 import os
 from collections.abc import Generator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
-from contextlib import closing
+from contextlib import closing, contextmanager
+from pathlib import Path
 from typing import Any
 
 from percept_obs.compile import Array
@@ -19,21 +20,54 @@ class Unfinished(UserWarning):
     """An ensemble was interrupted; the runs that are missing have the status "not_run"."""
 
 
-def open_store(path: str | os.PathLike[str], fingerprint: str, shape: tuple[int, int], chunk: int) -> Any:
-    """Open the array of statistics in a Zarr store, shape (number of runs, number of statistics); refuse another."""
+@contextmanager
+def open_store(
+    path: str | os.PathLike[str] | None, fingerprint: str, shape: tuple[int, int], chunk: int
+) -> Generator[Any]:
+    """Open the array of statistics in a Zarr store, shape (number of runs, number of statistics), None without a path.
+
+    The store is this ensemble's alone until it is left; ValueError if it is another's, or something else.
+    """
+    if path is None:
+        yield None
+        return
+    import sqlite3
+
     import zarr
 
-    group: Any = zarr.open_group(os.fspath(path), mode="a")
-    stored = group.attrs.get("fingerprint")
-    if stored not in (None, fingerprint) or (stored is None and len(list(group))):
+    store = Path(path)
+    if not os.fspath(path) or (store.exists() and not (store / "zarr.json").exists() and _holds(store)):
+        raise ValueError(f"the store {os.fspath(path)!r} is no Zarr store; name a new folder, such as ensemble.zarr")
+    store.parent.mkdir(parents=True, exist_ok=True)
+    # The system gives a lock of a database back when its process ends, however it ends.
+    try:
+        lock = sqlite3.connect(f"{store}.lock", timeout=0, check_same_thread=False)
+        lock.execute("BEGIN EXCLUSIVE")
+    except sqlite3.OperationalError as error:
         raise ValueError(
-            f"the store {os.fspath(path)} holds something else than this ensemble; name a new one, or call with "
-            "the settings that it was begun with"
-        )
-    if stored is None:
-        group.create_array("progress/runs", shape=shape, chunks=(chunk, shape[1]), dtype=float)
-        group.attrs["fingerprint"] = fingerprint
-    return group["progress/runs"]
+            f"the store {store} is not free ({error}): another ensemble writes to it now, or its folder cannot be "
+            "written to; wait, or name a new one"
+        ) from None
+    try:
+        group: Any = zarr.open_group(store, mode="a")
+        stored = group.attrs.get("fingerprint")
+        if stored not in (None, fingerprint) or (stored is None and len(list(group))):
+            raise ValueError(
+                f"the store {store} holds something else than this ensemble; name a new one, or call with the "
+                "settings that it was begun with"
+            )
+        if stored is None:
+            group.create_array("progress/runs", shape=shape, chunks=(min(chunk, shape[0]), shape[1]), dtype=float)
+            group.attrs["fingerprint"] = fingerprint
+        yield group["progress/runs"]
+    finally:
+        lock.close()
+        Path(f"{store}.lock").unlink(missing_ok=True)
+
+
+def _holds(store: Path) -> bool:
+    """Return True for a file, and for a folder that is not empty."""
+    return not store.is_dir() or any(store.iterdir())
 
 
 def run_missing(plan: Plan, results: Array, chunk: int, client: Any = None, stored: Any = None) -> None:

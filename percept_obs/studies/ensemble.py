@@ -148,7 +148,7 @@ def ensemble(
     >>> round(found.settling_time.sel(gain=10.0, seed=0).item(), 2)
     1.91
     """
-    needed("cluster", "xarray", *(("zarr",) if store else ()))
+    needed("cluster", "xarray", *(("zarr",) if store is not None else ()))
     camera, motion = camera or scenario.camera, believed or scenario.motion
     duration = scenario.duration if duration is None else float(duration)
     limit(float(seeds) if isinstance(seeds, int | np.integer) else len(seeds), "seeds", "take fewer", MOST_RUNS)
@@ -158,6 +158,8 @@ def ensemble(
         raise ValueError(f"over has {', '.join(unknown)}, which cannot vary here; there are {', '.join(names)}")
     if not several.size or several.ndim != 1 or several.dtype.kind not in "iu" or several.min() < 0:
         raise ValueError(f"the seeds are {seeds!r}; give whole numbers from 0 on, or how many of them")
+    steps = duration / min(step, camera.period)
+    limit(steps, "steps", "take longer steps or a shorter time")
     grid = grid_of(over or {}, several, names)
     runs = math.prod(grid.sizes.values())
     limit(float(runs), "runs", "take fewer values or seeds", MOST_RUNS)
@@ -177,19 +179,19 @@ def ensemble(
         after,
         tuple(coordinates),
         None if prior is None else tuple((name, float(value)) for name, value in prior.items()),
-        choose(language, runs * duration / min(step, camera.period)),
+        choose(language, runs * steps),
     )
     _refuse_values(plan)
     about = _settings(plan)
     shape = runs, len(plan.statistics)
-    stored = open_store(store, about["fingerprint"], shape, chunk) if store else None
-    results = np.zeros(shape) if stored is None else stored[:]
-    run_missing(plan, results, chunk, client, stored)
-    found = _dataset(plan, results).assign_attrs(
-        {name: value if isinstance(value, str | float) else json.dumps(value) for name, value in about.items()}
-    )
-    if store:
-        found.to_zarr(os.fspath(store), mode="a", consolidated=False)
+    with open_store(store, about["fingerprint"], shape, chunk) as stored:
+        results = np.zeros(shape) if stored is None else stored[:]
+        run_missing(plan, results, chunk, client, stored)
+        found = _dataset(plan, results).assign_attrs(
+            {name: value if isinstance(value, str | float) else json.dumps(value) for name, value in about.items()}
+        )
+        if store is not None:
+            found.to_zarr(os.fspath(store), mode="a", consolidated=False)
     return found
 
 

@@ -25,6 +25,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.signal import from_the_start
 from percept_obs.system.surfaces import POINT, BehindCamera
 from percept_obs.tracking.grid import Hold
+from percept_obs.validation import numbers
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,7 +55,7 @@ def grid_of(over: Mapping[str, Any], seeds: Array, units: Mapping[str, str]) -> 
 
     columns: dict[str, Any] = {"seed": ("seed", seeds, {"units": "1"})}
     for name, given in over.items():
-        along, values = tuple(getattr(given, "dims", (name,))), np.asarray(given, dtype=float)
+        along, values = tuple(getattr(given, "dims", (name,))), numbers(getattr(given, "values", given), f"over {name}")
         if values.ndim != len(along) or not values.size or not np.isfinite(values).all():
             raise ValueError(
                 f"over goes {name!r} through values of shape {values.shape}; give finite numbers, a list of them or a "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from percept_obs.observers import OBSERVERS
 from percept_obs.recording import Camera, Uniform, scenarios
 from percept_obs.studies.ensemble import ensemble
 from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.validation import limit, refuse_kind
 
 SCENARIOS = {make.__name__: make for make in (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)}
 MAKERS = {make.key: make for make in OBSERVERS}
@@ -21,7 +22,15 @@ NEEDED = ("scenario", "observer", "store")
 SETTINGS = {
     *("seeds", "duration", "start", "hold", "step", "tolerance", "after", "coordinates", "prior", "language", "chunk")
 }
-"""Arguments of `ensemble` that a file may have besides scenario, observer, outputs, gains, camera, over and store."""
+"""Arguments of `ensemble` that a file may have besides those of `KINDS`."""
+
+KINDS: Mapping[str, Any] = {
+    **dict.fromkeys(NEEDED, str),
+    "outputs": Sequence[str],
+    **dict.fromkeys(("gains", "camera"), Mapping[str, float]),
+    "over": Mapping[str, Any],
+}
+"""Entries of a file that are read here, with their kinds."""
 
 
 def sweep(path: str | os.PathLike[str], client: Any = None) -> Any:
@@ -63,23 +72,24 @@ def sweep(path: str | os.PathLike[str], client: Any = None) -> Any:
         entries = tomllib.loads(file.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"{file} is no TOML: {error}") from None
-    if unknown := sorted(set(entries) - SETTINGS - {*NEEDED, "outputs", "gains", "camera", "over"}):
+    if unknown := sorted(set(entries) - SETTINGS - set(KINDS)):
         raise ValueError(f"{file}: a sweep does not know {', '.join(unknown)}; it knows {', '.join(sorted(SETTINGS))}")
     if missing := [name for name in NEEDED if name not in entries]:
         raise ValueError(f"{file}: a sweep needs {', '.join(missing)}")
-    for name in ("gains", "camera", "over"):
-        if not isinstance(entries.setdefault(name, {}), dict):
-            raise ValueError(f"{name} is {entries[name]!r}; it must be a table of names and values")
+    for name in set(KINDS) & set(entries):
+        refuse_kind("sweep", name, entries[name], KINDS[name])
     scenario = _named(SCENARIOS, "scenario", entries["scenario"])()
     family = _named(MAKERS, "observer", entries["observer"])
     outputs = entries.get("outputs", [symbol.name for symbol in scenario.surface.image_coordinates])
-    observer = family(PerspectiveSystem(scenario.motion, scenario.surface).partition(*outputs), **entries["gains"])
-    camera = entries["camera"]
+    gains, camera = entries.get("gains", {}), dict(entries.get("camera", {}))
+    options = {option.name: gains.pop(option.name) for option in family.options if option.name in gains}
+    form = PerspectiveSystem(scenario.motion, scenario.surface).partition(*outputs)
+    observer = family(form, **options).with_gains(**gains)
     if "noise" in camera:
         camera["noise"] = Uniform(camera["noise"])
-    over = {name: _values(name, values) for name, values in entries["over"].items()}
+    over = {name: _values(name, values) for name, values in entries.get("over", {}).items()}
     settings = {name: entries[name] for name in SETTINGS if name in entries}
-    store = file.parent / entries["store"]
+    store = entries["store"] and file.parent / entries["store"]
     return ensemble(scenario, observer, over, camera=Camera(**camera), client=client, store=store, **settings)
 
 
@@ -95,4 +105,7 @@ def _values(name: str, values: Any) -> Any:
         return values
     if set(values) != {"from", "to", "count"}:
         raise ValueError(f"over has {values!r} for {name}; give a list, or from, to and count")
-    return np.linspace(values["from"], values["to"], values["count"])
+    for part, kind in (("from", float), ("to", float), ("count", int)):
+        refuse_kind("sweep", f"{part} for {name}", values[part], kind)
+    limit(values["count"], f"values of {name}", "take fewer")
+    return np.linspace(values["from"], values["to"], max(values["count"], 0))

@@ -14,6 +14,8 @@ import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
+from percept_obs.validation.limits import limit_range
+
 LARGEST_FLOAT = 10**308
 """Integers and fractions from here on do not become floats."""
 
@@ -63,6 +65,7 @@ def are_numbers(value: Any) -> bool:
     """Return True if numpy makes an array of real numbers of a value without reading text or dropping anything."""
     if isinstance(value, str | bytes | Mapping | np.ma.MaskedArray) or callable(value):
         return False
+    limit_range(value)
     try:
         array = np.asarray(value)
     except (ValueError, TypeError):  # ragged
@@ -178,6 +181,7 @@ def _sequence(origin: type, inside: tuple[Any, ...]) -> Kind:
             return are_numbers(value) and np.ndim(value) == 1
         if not isinstance(value, admitted) or isinstance(value, str | bytes | Mapping):
             return False
+        limit_range(value)
         if not hasattr(value, "__len__"):
             return True  # looking into it would use it up
         if isinstance(value, np.ndarray) and not value.ndim:
@@ -191,7 +195,9 @@ def _sequence(origin: type, inside: tuple[Any, ...]) -> Kind:
 
 
 def _instance(cls: Any) -> Kind:
-    if cls is Any or not isinstance(cls, type):
+    if cls is Any:
+        return Kind("anything", lambda _: True, by_type=True)
+    if not isinstance(cls, type):
         return Kind(with_article(getattr(cls, "__name__", str(cls))), lambda _: True, by_type=True)
     public = {name for name in dir(cls) if name[0] != "_"}
 

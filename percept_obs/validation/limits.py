@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 MOST_NUMBERS = 10_000_000
 """Numbers that one call may keep: with what is computed from them they take about 1 GiB."""
 
@@ -20,3 +22,9 @@ def limit(amount: float, unit: str, remedy: str, most: float = MOST_NUMBERS) -> 
     """
     if not amount <= most:
         raise TooMuchWork(f"this would be {amount:.3g} {unit}, and at most {most:.3g} are allowed; {remedy}")
+
+
+def limit_range(value: Any) -> None:
+    """Raise `TooMuchWork` for a range with more than `MOST_NUMBERS` entries, before anybody looks into it."""
+    if isinstance(value, range):
+        limit((value.stop - value.start) / value.step, "entries of a range", "give fewer")

@@ -121,7 +121,8 @@ def own_state_for_the_page(form: PointsForm) -> Texts:
     if sampled:
         refuse_unfit(motion)
     given = motion.parameters if sampled else (TIME, *SHARES)
-    expressions = tuple(expression.xreplace(motion.values) for expression in form.layout.expressions)
+    numbers = {symbol: sp.Float(value, 17) for symbol, value in motion.values.items()}
+    expressions = tuple(expression.xreplace(numbers) for expression in form.layout.expressions)
     left = sorted(map(str, set().union(*(e.free_symbols for e in expressions)) - set(given)))
     if left:
         raise ValueError(
