@@ -87,16 +87,33 @@ def undecided(formula):
 
 
 def by_python(sheet, row, text):
-    """Mark of a line, whether it is refused, and its mathematics."""
+    """Mark of a line, and whether it is refused."""
     entry = entry_of(sheet, row, text)
     judged = alone(sheet, row, text)
-    return {"mark": MARKS[judged.verdict] if judged else "", "refused": bool(entry.refusal), "markup": entry.markup}
+    return {"mark": MARKS[judged.verdict] if judged else "", "refused": bool(entry.refusal)}
 
 
 def by_the_page(node, chosen):
-    """Marks of lines, given as name, row and text, as the page finds them."""
-    task = {"texts": base64.b64encode(file_of("desk_lab").read_bytes()).decode(), "lines": chosen}
+    """Marks of lines, given as name, row and text, as the page finds them, and the lines as MathML."""
     return [
         {"mark": line["mark"], "refused": bool(line["refusal"]), "markup": line["markup"]}
-        for line in run_script(node, FRONT / "tests/run_desk.js", task)["judged"]
+        for line in _run(node, lines=chosen)["judged"]
     ]
+
+
+def answers_of_the_page(node, *desks):
+    """What the page answers to the settings of desks by itself."""
+    settings = [(next(iter(desk.sheets), _name(desk.settings)), desk.settings) for desk in desks]
+    return _run(node, settings=settings, own={name: each for desk in desks for name, each in desk.sheets.items()})[
+        "answers"
+    ]
+
+
+def _name(settings):
+    motion, surface, outputs, observer, part = map(settings.get, ("motion", "surface", "outputs", "observer", "part"))
+    return sheet_name(f"{motion} {surface}", outputs, observer, part)
+
+
+def _run(node, **task):
+    texts = base64.b64encode(file_of("desk_lab").read_bytes()).decode()
+    return run_script(node, FRONT / "tests/run_desk.js", {"texts": texts, **task})

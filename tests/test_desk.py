@@ -2,19 +2,15 @@
 
 import xml.etree.ElementTree as ElementTree
 
-import numpy as np
 import pytest
-import sympy as sp
 from test_checking_reading import CANARY, HOSTILE
 
 from percept_obs import PerspectiveSystem, affine, plane, rigid
 from percept_obs.checking.explaining import plain
-from percept_obs.checking.reading import words_of
 from percept_obs.labs import derivation_desk
-from percept_obs.labs.desk.settings import EXAMPLE, LONGEST_LINE, SCHEMA
-from percept_obs.labs.desk.sheets import PARTS, sheet_of
-from percept_obs.labs.desk.systems import OBSERVERS, SURFACES, number_of, system_of, system_of_student
-from percept_obs.labs.desk.typed import typed_markup
+from percept_obs.labs.desk.settings import LONGEST_LINE, SCHEMA
+from percept_obs.labs.desk.sheets import PARTS, name_of, sheet_of
+from percept_obs.labs.desk.systems import OBSERVERS, SURFACES, system_of, system_of_student
 
 TAIL = "a12 y2 - a31 y1^2 - a32 y1 y2 + b1 y3"
 RIGHT = f"a13 + (a11 - a33) y1 + {TAIL} - b3 y1 y3"
@@ -109,10 +105,7 @@ def test_the_first_hint_says_which_of_several_lines():
 def test_a_right_line_is_said_to_be_right_at_once():
     found = answer({"y1'": f"y1' = {RIGHT}"})
     assert (found["words"], found["right"], found["lines"][0]["mark"]) == ("Right so far, 1 of 3 lines.", True, "right")
-    assert {name: found["steps"][5][name] for name in ("name", "mark", "given", "asked")} == {
-        **{"name": "Image motion", "mark": "right"},
-        **{"given": 1, "asked": 3},
-    }
+    assert found["steps"][5] == {"mark": "right", "given": 1, "asked": 3}
 
 
 def test_an_error_is_carried_from_step_to_step():
@@ -124,11 +117,11 @@ def test_an_error_is_carried_from_step_to_step():
 
 
 def test_the_numbers_of_steps_are_those_of_the_derivation():
-    steps = derivation_desk().analysis["steps"]
-    derivation = [step.reason.rstrip(":") for step in system_of("affine", "pinhole").derivation()]
-    assert [step["reason"] for step in steps[:6]] == derivation[:6]
-    assert steps[6]["reason"] == derivation[7]  # what is only multiplied out is not asked for again
-    assert all(len(step["name"].split()) <= 3 for step in steps)
+    steps = [step.reason for step in derivation_desk().sheet().derivation]
+    derivation = [step.reason for step in system_of("affine", "pinhole").derivation()]
+    assert steps[:6] == derivation[:6]
+    assert steps[6] == derivation[7]  # what is only multiplied out is not asked for again
+    assert all(len(name_of(reason).split()) <= 3 for reason in steps)
 
 
 @pytest.mark.parametrize("part", PARTS)
@@ -145,29 +138,10 @@ def test_every_line_takes_its_own_formula(part, surface):
             lines = {name: text for name, text in lines.items() if len(text) < LONGEST_LINE}
             found = answer(lines, step=number, part=part, surface=surface, outputs=outputs, observer=observer)
             assert found["right"], (observer, found)
-            for line in found["lines"]:
-                as_tree(line["markup"])
-
-
-def test_a_formula_stands_as_it_was_typed():
-    shown = as_tree(
-        derivation_desk(step=6, typed={"rate 6 y1'": "b1y3 + a11 y1^2/(2 y2)"}).analysis["lines"][0]["markup"]
-    )
-    assert "".join(shown.itertext()) == "b1\u2062y3+a11\u2062y122\u2062y2"  # the fraction needs no brackets
-    assert [len(list(shown.iter(tag))) for tag in ("mfrac", "msubsup", "msub")] == [1, 1, 4]
-
-
-@pytest.mark.parametrize(
-    "text", ["a11 (", "a11 +", "y1^", "/", ")", "((y1)", "sqrt(y1", "\\frac{y1}{", "y1' =", "= y1", "|", "^^"]
-)
-def test_what_is_not_complete_is_shown_all_the_same(text):
-    (line,) = answer({"y1'": text})["lines"][:1]
-    assert line["refusal"]
-    as_tree(line["markup"])
 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
-def test_nothing_that_is_typed_is_run_or_becomes_a_part_of_the_page(text, tmp_path, monkeypatch):
+def test_nothing_that_is_typed_is_run(text, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     desk = derivation_desk()
     message = {"settings": {**desk.settings, "step": 6, "typed": {"rate 6 y1'": text}}, "summary": {"serial": 1}}
@@ -178,14 +152,8 @@ def test_nothing_that_is_typed_is_run_or_becomes_a_part_of_the_page(text, tmp_pa
     desk.set_state(message)
     assert desk.analysis["serial"] == 1
     line = desk.analysis["lines"][0]
-    known = {"math", "mrow", "mi", "mn", "mo", "msub", "msup", "msubsup", "mover", "mfrac", "msqrt"}
-    assert {node.tag for node in as_tree(line["markup"]).iter()} <= known
     assert line.get("refusal") or not text.strip()
     assert not any(CANARY in path.name for path in tmp_path.iterdir())
-
-
-def test_signs_of_the_page_s_own_language_are_written_as_text():
-    assert typed_markup(words_of("x < y1")) == "<mrow><mi>x</mi><mo>&lt;</mo><msub><mi>y</mi><mi>1</mi></msub></mrow>"
 
 
 @pytest.mark.parametrize(
@@ -204,55 +172,13 @@ def test_a_line_that_does_not_fit_is_refused(text, refusal):
     assert line["mark"] == ""
 
 
-def test_the_witness_has_the_numbers_of_the_formulas():
-    desk = derivation_desk(step=6, point=[0.2, -0.1, 0.7], typed={"rate 6 y1'": MISTAKES["wrong sign"][0]})
-    system = system_of("affine", "pinhole")
-    numbers = {s: number_of(s, system) for s in system.parameters}
-    numbers |= dict(zip(system.coordinates, (0.2, -0.1, 0.7), strict=True))
-    true = [float(rate.subs(numbers)) for rate in system.rate[:2]]
-    b3, y1, y3 = (numbers[sp.Symbol(name, real=True)] for name in ("b3", "y1", "y3"))
-    picture = desk.analysis["picture"]
-    np.testing.assert_allclose(picture["true"], true)
-    np.testing.assert_allclose(picture["mine"][0], true[0] + 2 * b3 * y1 * y3)
-    assert picture["mine"][1] is None
-    apart = np.subtract(picture["field"]["mine"][0], picture["field"]["true"][0])
-    np.testing.assert_allclose(apart, 2 * b3 * np.array(picture["field"]["places"])[:, 0] * y3, atol=1e-7)
-    assert derivation_desk(part="form").analysis["picture"] is None
-
-
-def test_a_slip_in_an_earlier_step_bends_the_arrow_that_follows_from_it():
-    typed = {"rate 5 the velocity along Z": "a31 y1 + a32 y2 + a33 - b3 y3"}
-    carried = derivation_desk(step=5, typed=typed).analysis["picture"]
-    lines = {
-        "y1'": MISTAKES["wrong sign"][0],
-        "y2'": "a21 y1 + a22 y2 + a23 - y2 (a31 y1 + a32 y2 + a33 - b3 y3) + b2 y3",
-    }
-    np.testing.assert_allclose(carried["mine"], answer(lines)["picture"]["mine"])
-    assert derivation_desk(step=5).analysis["picture"]["mine"] == [None, None]
-
-
-def test_each_term_of_the_example_is_judged_and_the_whole_misses_by_its_slip():
-    (parts,) = derivation_desk().analysis["grown"].values()
-    (text,) = EXAMPLE["typed"].values()
-    assert [text[: part["end"]] for part in parts][:2] == ["a13", "a13 + (a11 - a33) y1"]
-    assert parts[-1]["end"] == len(text)
-    assert parts[-1]["miss"] > 0.5
-    mended = {name: line.replace("+ b3", "- b3") for name, line in EXAMPLE["typed"].items()}
-    assert next(iter(derivation_desk(step=6, typed=mended).analysis["grown"].values()))[-1]["miss"] < 1e-9
-
-
-def test_a_line_without_a_value_has_no_arrow():
-    desk = derivation_desk(step=6, point=[0.0, 0.1, 0.7], typed={"rate 6 y1'": "1/y1", "rate 6 y2'": "sqrt(-1 - y1^2)"})
-    assert desk.analysis["picture"]["mine"] == [None, None]
-
-
 def test_a_system_follows_from_a_name_on_every_machine():
     system, outputs = system_of_student("Ada")
     assert (str(system.rate[0]), outputs) == PINNED
     assert system_of_student(" ada ")[0].rate == system.rate
     desk = derivation_desk(student="Ada", surface="sphere")
     assert desk.sheet().goal.lines[-3].name == derivation_desk().sheet().goal.lines[-3].name
-    assert "sphere" not in desk.analysis["title"]
+    assert "sphere" not in desk.sheets["student Ada, rate"]["title"]
 
 
 PINNED = ("a11*y1 + a13*y2 - a22*y1 - a23*y1*y2 + b1*y3 - b2*y1*y3", ("y2",))
@@ -269,8 +195,8 @@ def test_neighbours_have_different_systems():
 def test_a_system_of_ones_own_can_be_given():
     system = PerspectiveSystem(rigid(), plane((0.1, 0.2, 1.0), outputs=3))
     desk = derivation_desk(system, step=6)
-    assert desk.analysis["title"] == "rigid motion on the plane surface, y1 and y2 and y3 measured"
-    assert desk.analysis["picture"] is None  # three outputs are no picture
+    printed = desk.sheets["own, rate"]
+    assert (printed["title"], printed["outputs"]) == ("rigid motion on the plane surface", ["y1", "y2", "y3"])
     assert derivation_desk(PerspectiveSystem(affine(), SURFACES["chained"]())).system()[0].surface.name == "chained"
     with pytest.raises(ValueError, match="the desk takes a PerspectiveSystem, not 5"):
         derivation_desk(5)

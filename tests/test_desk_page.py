@@ -1,11 +1,19 @@
 """The page judges lines by itself, and as Python does: with the same grammar, by values at points that nobody knows."""
 
 from collections import Counter
-from html import unescape
 
+import numpy as np
 import pytest
-from desk_formulas import by_python, by_the_page, lines
+import sympy as sp
+from desk_formulas import answers_of_the_page, by_python, by_the_page, lines
 from sample_sizes import sampled
+from test_checking_reading import HOSTILE
+from test_desk import MISTAKES, as_tree
+
+from percept_obs import PerspectiveSystem, plane, rigid
+from percept_obs.labs import derivation_desk
+from percept_obs.labs.desk.settings import EXAMPLE, LONGEST_LINE
+from percept_obs.labs.desk.systems import number_of, system_of
 
 pytestmark = pytest.mark.node
 
@@ -31,31 +39,22 @@ def test_python_and_the_page_judge_lines_alike(node):
         if (one["mark"], one["refused"]) != (other["mark"], other["refused"])
     ]
     assert differ == []
-    shown = [(one["markup"], unescape(other["markup"])) for one, other in zip(python, page, strict=True) if one["mark"]]
-    assert [pair for pair in shown if unescape(pair[0]) != pair[1]] == []
+    for line in page:
+        as_tree(line["markup"])
     counted = Counter(line["mark"] for line in python)
     print(counted)
     assert min(counted["right"], counted["wrong"], counted[""]) > FORMULAS / 20  # all three are tried
 
 
 RIGHT = "a11 y1 + a12 y2 + a13 + b1 y3 - y1 (a31 y1 + a32 y2 + a33 + b3 y3)"
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        f"{RIGHT} + sin(y1)^2 + cos(y1)^2 - 1",
-        f"{RIGHT} + cosh(y1 y2)^2 - sinh(y1 y2)^2 - 1",
-        f"{RIGHT} + sqrt(y1^2 y2^2) - |y1| |y2|".replace("|y1|", "abs(y1)").replace("|y2|", "abs(y2)"),
-        f"{RIGHT} + sqrt(1 + y1^2) sqrt(1 + y1^2) - 1 - y1^2",
-        f"{RIGHT} + sin(2 y1) - 2 sin(y1) cos(y1)",
-        f"{RIGHT} + exp(y1 + y2) - exp(y1) exp(y2)",
-    ],
-)
-def test_what_is_the_same_by_a_relation_of_functions_is_right(node, text):
-    assert marks(node, [text]) == ["right"]
-
-
+THE_SAME = [
+    "sin(y1)^2 + cos(y1)^2 - 1",
+    "cosh(y1 y2)^2 - sinh(y1 y2)^2 - 1",
+    "sqrt(y1^2 y2^2) - abs(y1) abs(y2)",
+    "sqrt(1 + y1^2) sqrt(1 + y1^2) - 1 - y1^2",
+    "sin(2 y1) - 2 sin(y1) cos(y1)",
+    "exp(y1 + y2) - exp(y1) exp(y2)",
+]
 NOTHING = {
     "a multiple of a large prime": "2305843009213 y1",
     "far too small": "0.000000000001 y1",
@@ -73,8 +72,72 @@ NOTHING = {
 }
 
 
-@pytest.mark.parametrize("name", NOTHING)
-def test_no_attack_on_the_decision_is_called_right(node, name):
-    assert marks(node, [f"{RIGHT} + {NOTHING[name]}", f"{RIGHT} + ({NOTHING[name]}) b3"]) in (
-        [["wrong"] * 2, ["unknown"] * 2]
-    )
+def test_what_is_the_same_by_a_relation_of_functions_is_right_and_no_attack_on_the_decision_is(node):
+    texts = [*THE_SAME, *NOTHING.values(), *(f"({text}) b3" for text in NOTHING.values())]
+    same, plain, times = np.split(marks(node, [f"{RIGHT} + {text}" for text in texts]), [6, 6 + len(NOTHING)])
+    assert set(same) == {"right"}
+    found = dict(zip(NOTHING, zip(plain, times, strict=True), strict=True))
+    assert {
+        name: each for name, each in found.items() if each[0] != each[1] or each[0] not in ("wrong", "unknown")
+    } == {}
+
+
+def test_a_formula_stands_as_it_was_typed(node):
+    texts = ["b1y3 + a11 y1^2/(2 y2)", "x < y1"]
+    shown, signs = (line["markup"] for line in by_the_page(node, [(RATE, 21, text) for text in texts]))
+    tree = as_tree(shown)
+    assert "".join(tree.itertext()) == "b1\u2062y3+a11\u2062y122\u2062y2"  # the fraction needs no brackets
+    assert [len(list(tree.iter(tag))) for tag in ("mfrac", "msubsup", "msub")] == [1, 1, 4]
+    assert signs == "<mrow><mi>x</mi><mo>&#60;</mo><msub><mi>y</mi><mi>1</mi></msub></mrow>"
+
+
+def test_what_is_not_complete_is_shown_and_nothing_typed_becomes_a_part_of_the_page(node):
+    begun = ["a11 (", "a11 +", "y1^", "/", ")", "((y1)", "sqrt(y1", "\\frac{y1}{", "y1' =", "= y1", "|", "^^"]
+    texts = [*begun, *(text for text in HOSTILE if text.strip() and len(text) <= LONGEST_LINE)]
+    known = {"math", "mrow", "mi", "mn", "mo", "msub", "msup", "msubsup", "mover", "mfrac", "msqrt"}
+    for text, line in zip(texts, by_the_page(node, [(RATE, 21, text) for text in texts]), strict=True):
+        assert line["refused"] or line["mark"] == "unknown", text
+        assert {part.tag for part in as_tree(line["markup"]).iter()} <= known
+
+
+def test_the_witness_has_the_numbers_of_the_formulas(node):
+    point = [0.2, -0.1, 0.7]
+    wrong = derivation_desk(step=6, point=point, typed={"rate 6 y1'": MISTAKES["wrong sign"][0]})
+    own = derivation_desk(PerspectiveSystem(rigid(), plane((0.1, 0.2, 1.0), outputs=3)), step=6)
+    found = answers_of_the_page(node, wrong, derivation_desk(part="form"), own)
+    system = system_of("affine", "pinhole")
+    numbers = {s: number_of(s, system) for s in system.parameters} | dict(zip(system.coordinates, point, strict=True))
+    true = [float(rate.subs(numbers)) for rate in system.rate[:2]]
+    b3, y1, y3 = (numbers[sp.Symbol(name, real=True)] for name in ("b3", "y1", "y3"))
+    picture = found[0]["picture"]
+    np.testing.assert_allclose(picture["true"], true)
+    np.testing.assert_allclose(picture["mine"][0], true[0] + 2 * b3 * y1 * y3)
+    assert picture["mine"][1] is None
+    apart = np.subtract(picture["field"]["mine"][0], picture["field"]["true"][0])
+    np.testing.assert_allclose(apart, 2 * b3 * np.array(picture["field"]["places"])[:, 0] * y3, atol=1e-7)
+    assert [answer["picture"] for answer in found[1:]] == [None, None]  # three outputs are no picture
+
+
+def test_a_slip_in_an_earlier_step_bends_the_arrow_that_follows_from_it(node):
+    along = "a31 y1 + a32 y2 + a33 - b3 y3"
+    lines = {"rate 6 y1'": MISTAKES["wrong sign"][0], "rate 6 y2'": f"a21 y1 + a22 y2 + a23 - y2 ({along}) + b2 y3"}
+    desks = [
+        derivation_desk(step=5, typed={"rate 5 the velocity along Z": along}),
+        derivation_desk(step=6, typed=lines),
+        derivation_desk(step=5),
+        derivation_desk(step=6, point=[0.0, 0.1, 0.7], typed={"rate 6 y1'": "1/y1", "rate 6 y2'": "sqrt(-1 - y1^2)"}),
+    ]
+    carried, direct, *none = (answer["picture"]["mine"] for answer in answers_of_the_page(node, *desks))
+    np.testing.assert_allclose(carried, direct)
+    assert none == [[None, None]] * 2  # nothing is typed, or it has no value
+
+
+def test_each_term_of_the_example_is_judged_and_the_whole_misses_by_its_slip(node):
+    mended = {name: line.replace("+ b3", "- b3") for name, line in EXAMPLE["typed"].items()}
+    answers = answers_of_the_page(node, derivation_desk(), derivation_desk(step=6, typed=mended))
+    parts, right = (next(iter(answer["grown"].values())) for answer in answers)
+    (text,) = EXAMPLE["typed"].values()
+    assert [text[: part["end"]] for part in parts][:2] == ["a13", "a13 + (a11 - a33) y1"]
+    assert parts[-1]["end"] == len(text)
+    assert parts[-1]["miss"] > 0.5
+    assert right[-1]["miss"] < 1e-9

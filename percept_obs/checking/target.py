@@ -9,13 +9,12 @@ from itertools import count, product
 from typing import Any
 
 import sympy as sp
-from lark import Token
 
 from percept_obs.checking.deciding import explicit, on_sides
 from percept_obs.checking.lines import Line, of_matrices, typed
 from percept_obs.checking.matrices import Matrices, in_entries
 from percept_obs.checking.points import key
-from percept_obs.checking.reading import Definition, Functions, Reading, Text, read, words_of
+from percept_obs.checking.reading import Definition, Functions, Reading, Text, read
 from percept_obs.compile import intermediates
 from percept_obs.observers.parts import hats
 from percept_obs.system.derivation import Derivation, Step
@@ -181,10 +180,6 @@ class Target:
         if isinstance(formula, sp.Eq) and (formula.lhs.is_Symbol or isinstance(formula.lhs, sp.MatrixSymbol)):
             return (Reading(key(formula.lhs.name), self.own(formula.rhs)),)
         return tuple(_entry_by_entry(Reading("", self.own(formula))))
-
-    def words(self, text: str) -> list[Token]:
-        """Return the tokens of a text, with the letters of this target told apart."""
-        return words_of(text, *self.known)
 
     @property
     def known(self) -> tuple[dict[str, Any], list[str]]:

@@ -1,9 +1,9 @@
-"""Answers of the desk to a sheet: steps, lines as mathematics, verdicts, hints, and numbers at a point."""
+"""Answers of the desk to a sheet: verdicts and hints; lines as mathematics and arrows are the page's own."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -16,12 +16,9 @@ from percept_obs.checking.explaining import sentences
 from percept_obs.checking.matching import Judged, judged
 from percept_obs.checking.reading import Reading
 from percept_obs.checking.review import CANNOT_BE_TOLD
-from percept_obs.labs.desk.arrows import ends_of, grown_of, picture_of
-from percept_obs.labs.desk.sheets import Sheet, label_of, name_of
-from percept_obs.labs.desk.typed import typed_markup
+from percept_obs.labs.desk.sheets import Sheet
 from percept_obs.labs.shared.markup import markup
 from percept_obs.labs.shared.schema import Settings
-from percept_obs.system.perspective import PerspectiveSystem
 
 Words = list[dict[str, str]]
 """A sentence in pieces of text and of MathML."""
@@ -59,7 +56,6 @@ SAID = {
 class Entry:
     """A line that somebody typed."""
 
-    markup: str  # the line as MathML
     reading: Reading | None = None  # the line as a formula, unless it cannot be read
     refusal: str = ""  # reason why it cannot be read
     position: int = 0  # place of that, counted in characters from 0
@@ -70,26 +66,18 @@ def entry_of(sheet: Sheet, row: int, text: str) -> Entry:
     """Read a line of a sheet."""
     goal, line = sheet.goal, sheet.goal.lines[row]
     try:
-        shown = typed_markup(goal.words(text), goal.letters)
-    except CannotRead as error:
-        return Entry("", None, _first_line(error), error.position)
-    try:
         readings = goal.read(text).lines
     except CannotRead as error:
-        return Entry(shown, None, _first_line(error), error.position)
+        return Entry(None, str(error).partition("\n")[0], error.position)
     names = {reading.name for reading in readings}
     formulas = [
         r.formula for r in readings if isinstance(r.formula, sp.Expr) and not isinstance(r.formula, sp.MatrixBase)
     ]
     if len(readings) != 1 or not formulas:
-        return Entry(shown, None, SAID["one formula"], len(text))
+        return Entry(None, SAID["one formula"], len(text))
     if names - {"", line.key}:
-        return Entry(shown, None, SAID["other line"].format(name=line.name))
-    return Entry(shown, Reading(f"line{row}", formulas[0]))
-
-
-def _first_line(error: CannotRead) -> str:
-    return str(error).partition("\n")[0]
+        return Entry(None, SAID["other line"].format(name=line.name))
+    return Entry(Reading(f"line{row}", formulas[0]))
 
 
 @lru_cache(maxsize=1024)
@@ -208,68 +196,30 @@ def next_hint(review: Review, hints: int) -> tuple[int, str]:
     return (following, HINTS[following - 1]) if following <= len(HINTS) else (0, "")
 
 
-def answer_to(sheet: Sheet, settings: Settings, system: PerspectiveSystem) -> Settings:
+def answer_to(sheet: Sheet, settings: Settings) -> Settings:
     """Return the answer to a sheet with these settings, as plain data for the page."""
     part, steps = settings["part"], range(1, len(sheet.derivation) + 1)
     step = min(settings["step"], len(steps))
-    names = [(number, name) for number in steps for name in sheet.derivation[number - 1].values]
-    keys = [f"{part} {number} {name}" for number, name in names]
+    keys = [f"{part} {number} {name}" for number in steps for name in sheet.derivation[number - 1].values]
     texts = {row: text for row, key in enumerate(keys) if (text := settings["typed"].get(key, "")).strip()}
     rows, review = sheet.rows(step), review_of(sheet, step, texts)
     hints = int(settings["hints"].get(f"{part} {step}", 0))
     hint, says = next_hint(review, hints)
     found = hints_of(sheet, review, hints)
-    reasons = [sheet.derivation[number - 1].reason.rstrip(":") for number in steps]
     return {
-        "given": sheet.given,
-        "letters": list(map(markup, sheet.letters)),
-        "steps": [
-            {"reason": reasons[k - 1], "name": name_of(reasons[k - 1]), **state_of(sheet, k, texts)} for k in steps
-        ],
-        "step": step,
-        "lines": [
-            {
-                "key": keys[row],
-                "name": names[row][1],
-                "label": label_of(names[row][1]),
-                **_line(sheet, row, texts, found),
-            }
-            for row in rows
-        ],
+        "steps": [state_of(sheet, number, texts) for number in steps],
+        "lines": [_line(sheet, row, texts, found) for row in rows],
         "words": summary_of(sheet, review, len(rows)),
         "right": review.right if review.lines else None,
         "hint": hint,
         "says": says,
-        "picture": picture_of(
-            sheet,
-            step,
-            {row: _formula(sheet, row, texts[row]) for row in rows if row in texts},
-            system,
-            settings["point"],
-        ),
-        "grown": {keys[row]: _grown(sheet, row, texts[row], system, settings["point"]) for row in rows if row in texts},
     }
-
-
-def _formula(sheet: Sheet, row: int, text: str) -> sp.Expr | None:
-    reading = entry_of(sheet, row, text).reading
-    return reading.formula if reading else None
-
-
-def _grown(sheet: Sheet, row: int, text: str, system: PerspectiveSystem, point: Sequence[float]) -> list[Settings]:
-    """Return the beginnings of a line of the image's motion, with what they look like; of other lines none."""
-    if sheet.goal.lines[row].name not in sheet.image:
-        return []
-    entries = {end: entry_of(sheet, row, text[:end]) for end in ends_of(text)}
-    formulas = {end: entry.reading.formula for end, entry in entries.items() if entry.reading}
-    return [{"markup": entries[part["end"]].markup, **part} for part in grown_of(sheet, row, formulas, system, point)]
 
 
 def _line(sheet: Sheet, row: int, texts: Mapping[int, str], hinted: Mapping[int, Settings]) -> Settings:
     """Return the answer to a line."""
-    if row not in texts:
-        return {"markup": "", "mark": "", "told": []}
-    entry = entry_of(sheet, row, texts[row])
-    if entry.reading is None:
-        return {"markup": entry.markup, "mark": "", "told": [], "refusal": entry.refusal, "position": entry.position}
-    return {"markup": entry.markup, **hinted[row]}
+    entry = entry_of(sheet, row, texts[row]) if row in texts else Entry()
+    if entry.reading:
+        return hinted[row]
+    told = {"refusal": entry.refusal, "position": entry.position} if entry.refusal else {}
+    return {"mark": "", "told": []} | told

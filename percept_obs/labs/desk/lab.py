@@ -116,17 +116,13 @@ class DerivationDesk(Lab):
             self.sheets = {**self.sheets, name: {**found, "outputs": list(outputs)}}
 
     def analyse(self) -> Settings:
-        """Return the sheet, and the answer to the lines of the step that is shown."""
-        settings = self.settings
+        """Return the answer to the lines of the step that is shown."""
+        self._print(self.settings["part"])
         try:
             sheet = self.sheet()
         except ValueError as error:
             return {"problem": str(error)}
-        system, outputs = self.system()
-        self._print(settings["part"])
-        seen = f"{system.motion.name} motion on the {system.surface.name} surface"
-        title = f"{seen}, {' and '.join(outputs)} measured"
-        return {"title": title, **answer_to(sheet, settings, system)}
+        return answer_to(sheet, self.settings)
 
 
 derivation_desk = DerivationDesk

@@ -3,12 +3,12 @@ import { readFileSync } from "node:fs";
 import { answerTo, judgedIn, Sheet } from "../src/desk/model/answers.js";
 import { modelOf } from "../src/common/model/texts.js";
 
-const { texts, lines = [], settings = [] } = JSON.parse(readFileSync(0, "utf8"));
+const { texts, lines = [], settings = [], own = {} } = JSON.parse(readFileSync(0, "utf8"));
 const { reader, sheets, said } = await modelOf(Buffer.from(texts, "base64"), {});
 const made = new Map();
 
 function sheetOf(name) {
-  if (!made.has(name)) made.set(name, new Sheet(sheets[name], reader, said));
+  if (!made.has(name)) made.set(name, new Sheet(own[name] ?? sheets[name], reader, said));
   return made.get(name);
 }
 

@@ -14,7 +14,7 @@ const DEBOUNCE = 20;
 /** Settings that verdicts and hints are of, and what Python says of them. */
 const SHEET = ["student", "motion", "surface", "outputs", "observer", "part", "step"];
 const JUDGED = [...SHEET, "typed", "hints"];
-const FROM_PYTHON = ["words", "right", "hint", "says", "steps"];
+const FROM_PYTHON = ["words", "right", "hint", "says"];
 /** Milliseconds without typing after which a text that may not be complete is judged. */
 const PAUSE = 1000;
 /** Milliseconds after which it is said that Python is at work. */
@@ -50,7 +50,7 @@ export class DeskLab extends LabBase {
     /** True if there is no Python that could say more. */
     this.alone = !widget.save_changes;
     this.judges = new WeakMap();
-    this.answer = this.found(this.settings) ?? this.heard;
+    this.answer = this.found(this.settings);
     this.follow(build(this, place));
     if (this.face === "first") this.replay.follow();
   }
@@ -166,11 +166,11 @@ export class DeskLab extends LabBase {
 
   analysed(answer) {
     this.heard = answer;
-    this.answer = this.found(this.settings) ?? answer;
+    this.answer = this.found(this.settings) ?? this.answer;
     this.schedule();
   }
 
-  /** What the page finds by itself, and what Python has said of the same lines; null if it does not know the sheet. */
+  /** What the page finds by itself, with what Python has said of the same lines; null while it has no such sheet. */
   found(settings) {
     const { model, heard, alone } = this;
     const printed = this.widget.get("sheets")?.[sheetName(settings, model.given)] ??
@@ -180,7 +180,10 @@ export class DeskLab extends LabBase {
     if (!this.judges.has(printed)) this.judges.set(printed, new Judge(printed, model.reader, model.said));
     const own = { ...answerTo(this.judges.get(printed), settings, alone), settings };
     if (alone || !heard.lines || !JUDGED.every((name) => same(heard.settings[name], settings[name]))) return own;
-    return { ...own, ...Object.fromEntries(FROM_PYTHON.map((name) => [name, heard[name]])), lines: heard.lines };
+    const told = Object.fromEntries(FROM_PYTHON.map((name) => [name, heard[name]]));
+    const steps = own.steps.map((step, k) => ({ ...step, ...heard.steps[k] }));
+    const lines = own.lines.map(({ refusal: _, ...line }, k) => ({ ...line, ...heard.lines[k] }));
+    return { ...own, ...told, steps, lines };
   }
 
   // What is shown.

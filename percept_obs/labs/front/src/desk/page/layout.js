@@ -71,7 +71,7 @@ export function build(lab, place) {
     announce: (text) => setText(live, text),
     show(answer, ofThisSheet) {
       root.querySelector(".bench").classList.toggle("waiting", !ofThisSheet);
-      if (!answer.steps || answer.problem) return;
+      if (!answer?.steps || answer.problem) return;
       setText(title, answer.title);
       root.dataset.part = answer.settings.part;
       const known = JSON.stringify([answer.given, answer.letters]);
