@@ -67,20 +67,20 @@ def drawn(seed, kind, constant=False):
         except BehindCamera:
             continue
         if np.abs(recording.truth[:, :2]).max() < 1.5 and recording.distance.min() > 0.8:
-            return recording, believed
+            return replace(recording, unit=0.7), believed
 
 
 def observed(make, recording):
     """The observer with gains for a point some metres away that a hand's motion shows."""
-    observer = make(FORM).in_units(length=0.7)
+    observer = make(FORM)
     if make.key == "extended_kalman":
-        return observer.with_gains(noise_variance=recording.noise_variance, hidden_variance=0.1)
+        return observer.with_gains(noise_variance=recording.noise_variance, hidden_variance=0.05)
     return observer.with_gains(**GAINS.get(make.key, {}))
 
 
 GAINS = {
-    "de_luca": {"measured_gain": 6, "hidden_gain": 120},
-    "spica": {"hidden_gain": 110},
+    "de_luca": {"measured_gain": 6, "hidden_gain": 60},
+    "spica": {"hidden_gain": 55},
     "integral_sliding_mode": {"feedback": 2, "switching_gain": 0.5, "sharpening": 0},
 }
 """Gains for a camera that a hand carries, where the defaults are for another one."""

@@ -38,14 +38,13 @@ def drawn(seed):
             continue
         if np.abs(recording.truth[:, :2]).max() > 1.5 or recording.truth[:, 2].max() > 20 / depth:
             continue
-        observer = make(form).in_units(length=speed / 0.7)
+        length = 1.0 if make.key == "linear_approximation" else speed / 0.7
+        recording, observer = replace(recording, unit=length), make(form)
         names = {gain.name for gain in observer.gains}
         if "bound" in names:
-            observer = observer.with_gains(bound=100 / depth)
+            observer = observer.with_gains(bound=100 * length / depth)
         if make.key == "extended_kalman":
-            observer = observer.with_gains(noise_variance=sigma**2, hidden_variance=depth**-2)
-        if make.key == "linear_approximation":
-            observer = make(form)
+            observer = observer.with_gains(noise_variance=sigma**2, hidden_variance=(length / depth) ** 2)
         guess = {"y3": 1 / (depth * 10 ** draw.uniform(-0.5, 0.5))} if draw.random() < 0.7 else {}
         return recording, observer, guess
 

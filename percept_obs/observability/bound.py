@@ -208,7 +208,7 @@ def cramer_rao(
     form = matching_form(system, recording)
     positive(step=step)
     noise = _noise(recording, form, noise_variance)
-    start, from_sample = _start(form, prior, noise[0])
+    start, from_sample = _start(form, prior, noise[0], HIDDEN_VARIANCE / recording.scale**2)
     with np.errstate(all="ignore"):  # overflow is reported below
         along = linearised(form, recording, doubt, step)
     if from_sample and not along.seen[0].all():
@@ -280,7 +280,7 @@ def _noise(recording: Recording, form: PartitionedSystem, variance: ArrayLike | 
     return values
 
 
-def _start(form: PartitionedSystem, prior: Prior, noise: Array) -> tuple[Array, bool]:
+def _start(form: PartitionedSystem, prior: Prior, noise: Array, hidden: Array) -> tuple[Array, bool]:
     """Covariance at the first sample, and True if the measured outputs begin at that sample."""
     n = len(form.coordinates)
     if prior is not None and not isinstance(prior, Mapping):
@@ -296,7 +296,7 @@ def _start(form: PartitionedSystem, prior: Prior, noise: Array) -> tuple[Array, 
     named = [name in variances for name in form.measured]
     if any(named) and not all(named):
         raise ValueError(f"the prior names some of {', '.join(form.measured)}; name all measured outputs or none")
-    start = np.diag([variances.get(name, HIDDEN_VARIANCE) for name in names_of(form)])
+    start = np.diag([variances.get(*each) for each in zip(names_of(form), hidden.tolist(), strict=True)])
     if not any(named):
         measured = positions(form, form.measured)
         start[np.ix_(measured, measured)] = noise

@@ -74,7 +74,7 @@ def linearised(
     limit(len(lengths) * count * n, f"numbers, from {count} steps between two samples", "take longer steps")
     assert recording.truth is not None
     f = rate_of(form)
-    rates = values_along(form, recording, [*f, *f.jacobian(form.coordinates), *_spread(form, f, doubt)])
+    rates = values_along(form, recording, [*f, *f.jacobian(form.coordinates), *_spread(form, f, doubt, recording)])
     h = lengths / count
     # state, transition and spread are integrated together: x' = f, Phi' = F Phi, S' = F S + S F^T + Q
     whole = np.zeros((len(lengths), n, 2 * n + 1))
@@ -106,10 +106,13 @@ def values_along(form: PartitionedSystem, recording: Recording, expressions: lis
     return lambda times, states: np.stack(evaluate(*states.T, *recording.motion.known(times).T, *surface), axis=-1)
 
 
-def _spread(form: PartitionedSystem, rate: sp.ImmutableMatrix, doubt: Doubt) -> sp.ImmutableMatrix:
+def _spread(
+    form: PartitionedSystem, rate: sp.ImmutableMatrix, doubt: Doubt, recording: Recording
+) -> sp.ImmutableMatrix:
     """Covariance that a doubt adds to the coordinates a second."""
     x = form.coordinates
-    doubts = doubt if isinstance(doubt, Mapping) else dict.fromkeys(names_of(form), doubt)
+    each = [] if isinstance(doubt, Mapping) else (doubt / recording.scale**2).tolist()
+    doubts = doubt if isinstance(doubt, Mapping) else dict(zip(names_of(form), each, strict=True))
     known = {symbol.name: symbol for symbol in (*x, *form.parameters)}
     unknown = [name for name in doubts if name not in known]
     if unknown:

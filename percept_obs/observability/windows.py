@@ -14,6 +14,7 @@ from percept_obs.observability.directions import in_words
 from percept_obs.recording import Recording
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.signal import from_the_start, slack_of
+from percept_obs.tracking.grid import known_signals
 from percept_obs.validation import checked
 
 UNSEEN = 1e-6
@@ -157,8 +158,8 @@ def _along(form: CanonicalForm, recording: Recording, expressions: Sequence[sp.E
         column = source[:, names.index(name)]
         seen = np.isfinite(column)
         outputs.append(np.interp(time, time[seen], column[seen]))
-    surface = [recording.view.values[s] for s in recording.view.parameters]
-    entries = vectorised((*form.x1, *form.parameters), expressions)(*outputs, *recording.motion.known(time).T, *surface)
+    known = known_signals(recording.motion, recording.view, time, recording.unit)
+    entries = vectorised((*form.x1, *form.parameters), expressions)(*outputs, *known.T)
     return np.stack(entries, axis=-1)
 
 

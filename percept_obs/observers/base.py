@@ -17,7 +17,7 @@ from percept_obs.observers.inversion import Unobservable
 from percept_obs.observers.parts import first_seen, hats
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
-from percept_obs.validation import checked, positive
+from percept_obs.validation import checked
 
 
 @dataclass(frozen=True)
@@ -127,30 +127,6 @@ class Observer:
         if unknown:
             raise ValueError(f"the {self.name} observer has no gain {', '.join(unknown)}; it has {', '.join(known)}")
         return replace(self, gains=tuple(replace(g, value=values.get(g.name, g.value)) for g in self.gains))
-
-    def in_units(self, length: float = 1.0, time: float = 1.0) -> Observer:
-        """Observer with its gains' numbers converted from other units.
-
-        Parameters
-        ----------
-        length, time : float
-            Units in metres and in seconds, such as 30.0 where a point at 30 m stands for one at 1 m.
-
-        Raises
-        ------
-        ValueError
-            If one of them is not positive and finite.
-
-        Examples
-        --------
-        >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole
-        >>> observer = ibo(PerspectiveSystem(affine(), pinhole()).measure("y1", "y2"), lyapunov=-0.5)
-        >>> next(gain.value for gain in observer.in_units(length=10.0).gains if gain.name == "lyapunov")
-        -0.005
-        """
-        positive(**{"the unit of length": length, "the unit of time": time})
-        scaled = {g.name: g.value * length ** g.powers["m"] * time ** g.powers["s"] for g in self.gains}
-        return self.with_gains(**scaled)
 
     @property
     def gain_values(self) -> dict[sp.Symbol, float]:

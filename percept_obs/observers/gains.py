@@ -25,7 +25,8 @@ class Gain:
     low, high : float
         Range that is worth exploring.
     unit : str
-        Such as "1/s", for image coordinates without a unit and hidden ones in 1/m; "1" for a number.
+        Such as "1/s", for image coordinates without a unit and hidden ones in 1/m, where m is the recording's `unit`;
+        "1" for a number.
     meaning : str
         Its effect, in a few words.
     condition : sympy relation
@@ -69,16 +70,6 @@ class Gain:
             raise ValueError(f"{self.name} = {value} is not finite; choose a number like {self.low} to {self.high}")
         if not self.condition.subs(self.symbol, sp.Float(value)):
             raise ValueError(f"{self.name} = {value:g} is out of range: {self.condition} is needed; {self.reason}")
-
-    @property
-    def powers(self) -> dict[str, int]:
-        """Powers of metres, "m", and seconds, "s", in the unit."""
-        above, _, below = self.unit.partition("/")
-        found = {"m": 0, "s": 0}
-        for sign, part in ((1, above), (-1, below.strip("()"))):
-            for name, _, power in (factor.partition("^") for factor in part.split() if factor != "1"):
-                found[name] += sign * int(power or 1)
-        return found
 
     def __str__(self) -> str:
         """Two lines of a docstring."""

@@ -147,6 +147,11 @@ class PointsForm:
         """Shape (p,) of values given once a point."""
         return (self.points,)
 
+    @property
+    def lengths(self) -> tuple[int, ...]:
+        """Zeros: nothing is converted, for linear equations are the same in any unit."""
+        return (0,) * (self.states + len(self.parameters))
+
     def fits(self, other: object) -> bool:
         """True if an observer of this form can follow recordings of the other: as many points, on the same surface."""
         return isinstance(other, PointsForm) and self.points == other.points and self.surface.fits(other.surface)

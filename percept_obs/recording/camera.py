@@ -223,6 +223,7 @@ class Scene(ABC):
 
     name: str
     duration: float
+    unit: float = 1.0
 
     @property
     @abstractmethod

@@ -22,6 +22,9 @@ from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
 from percept_obs.validation import checked
 
+USUAL_SPEED = 0.6
+"""Speed in units of length a second that default gains are made for, about that of Ma's examples."""
+
 
 @dataclass(frozen=True)
 class Sighting:
@@ -75,6 +78,10 @@ class Recording:
         Independent measurements of the depth or range in metres; NaN where there is none.
     source : str
         Where the recording comes from, its settings and its seed.
+    unit : float
+        Length, in the recording's own unit of length, by which observers and studies measure hidden lengths inside:
+        gains and variances are numbers in it.  So nothing relative changes if all lengths and the unit are written in
+        millimetres.  Without effect on several points, whose equations are linear.
 
     Warns
     -----
@@ -111,6 +118,7 @@ class Recording:
     noise_variance: float | None = None
     distances: Mapping[str, Array] = field(default_factory=dict)
     source: str = ""
+    unit: float = 1.0
 
     def __post_init__(self) -> None:
         truth = None if self.truth is None else readonly(self.truth)
@@ -132,6 +140,7 @@ class Recording:
         if self.noise_variance is not None and not 0 <= self.noise_variance < np.inf:
             raise ValueError(f"the noise_variance is {self.noise_variance}; a variance is finite and not negative")
         self.motion.known(self.time[[0, -1]])
+        self.motion.refuse_unit(self.unit)
         warn_if_implausible(self.time, self.outputs, self.names, self.view, self.motion)
 
     def __repr__(self) -> str:
@@ -188,6 +197,11 @@ class Recording:
             )
 
     @cached_property
+    def scale(self) -> Array:
+        """Factors of the coordinates, shape (n,), with which their lengths are measured by the unit."""
+        return readonly(self.unit ** -np.array(self.view.lengths[: len(self.view.coordinates)], dtype=float))
+
+    @cached_property
     def elapsed(self) -> Array:
         """Seconds since the first sample, shape (K,), as messages and figures give them."""
         return self.time - self.time[0]
@@ -236,6 +250,13 @@ class Recording:
             known = ", ".join(["truth", *self.distances])
             raise ValueError(f"the recording {self.source!r} has no distance with the name {name!r}; it has {known}")
         return self.distance if name == "truth" else self.distances[name]
+
+    def in_own_unit(self) -> Recording:
+        """Return the recording with the unit from its translation, with which default gains suit any scene.
+
+        It is the length in which b has the root mean square of `USUAL_SPEED` a second; 1 where nothing translates.
+        """
+        return replace(self, unit=self.motion.speed(self.time) / USUAL_SPEED or 1.0)
 
     def between(self, begin: float, end: float) -> Recording:
         """Return the part of the recording with begin <= time <= end in seconds, two samples at least."""

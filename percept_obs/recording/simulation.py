@@ -43,6 +43,8 @@ class Scenario(Scene):
     surface : ImagingSurface
     source : str
         Where the set-up comes from.
+    unit : float
+        Of its recordings, see `Recording`.
 
     Raises
     ------
@@ -71,9 +73,11 @@ class Scenario(Scene):
     duration: float
     surface: ImagingSurface
     source: str = ""
+    unit: float = 1.0
 
     def __post_init__(self) -> None:
         vars(self)["position"] = self._check("position", self.position, ("X", "Y", "Z"))
+        self.motion.refuse_unit(self.unit)
         self.surface.project(self.position)
 
     def points(self, times: ArrayLike) -> Array:
@@ -210,6 +214,7 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
         _signal(scenario),
         variance,
         source=f"{scenario.name}, {duration:g} s, {camera}, seed {name}",
+        unit=scenario.unit,
     )
 
 

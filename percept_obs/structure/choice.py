@@ -327,6 +327,13 @@ class StructureAndMotion(OnePoint):
         """The scale's number, if it has one."""
         return {} if self.scale is None else {d_s: self.scale}
 
+    @cached_property
+    def lengths(self) -> tuple[int, ...]:
+        """Power of length of each coordinate and of the scale, by its value when all velocities are twice as large."""
+        double = {d_s: d_s / 2} | {velocity: 2 * velocity for velocity in (*CAMERA, *OBJECT)}
+        products = (*OUTPUTS, *self.theta, *self.parameters)
+        return tuple(int(sp.log(e.subs(double, simultaneous=True) / e, 2)) for e in products)
+
     def fits(self, other: object) -> bool:
         """True if formulas derived for this choice hold for the other: the same one, with the same scale if any."""
         return isinstance(other, StructureAndMotion) and self == replace(

@@ -89,6 +89,11 @@ class LinearView(OnePoint):
         """The scale's number, if it has one."""
         return self.choice.values
 
+    @property
+    def lengths(self) -> tuple[int, ...]:
+        """Powers of length, as of the choice."""
+        return self.choice.lengths
+
     def fits(self, other: object) -> bool:
         """True if formulas derived for this view hold for the other."""
         return isinstance(other, LinearView) and self.choice.fits(other.choice)

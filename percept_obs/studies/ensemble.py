@@ -251,6 +251,7 @@ def _settings(plan: Plan) -> dict[str, Any]:
         "position": list(scenario.position),
         "motion": by_name(scenario.motion.values),
         "believed": by_name(plan.believed.values),
+        "unit": scenario.unit,
         "surface": f"{scenario.surface.name} {by_name(scenario.surface.values)}",
         "observer": observer.name,
         "outputs": list(observer.form.measured),

@@ -105,6 +105,12 @@ class Plan:
         return tuple(name for name in STATISTICS if name not in missing)
 
     @cached_property
+    def scale(self) -> Array:
+        """Factors of the coordinates by the scenario's unit of length, shape (n,)."""
+        surface = self.scenario.surface
+        return self.scenario.unit ** -np.array(surface.lengths[: len(surface.coordinates)], dtype=float)
+
+    @cached_property
     def scenes(self) -> list[str]:
         """Names of what varies in the scenario."""
         return [name for name in numbers_of(self.scenario) if name in self.grid.coords]
@@ -116,7 +122,7 @@ class Plan:
         moving = MovingPoint(POINT, surface.parameters, (*surface.image, 1 / surface.distance), surface.distance)
         return BatchLoop(
             self.observer.equations,
-            accumulated(self.observer, self.coordinates),
+            accumulated(self.observer, self.coordinates, self.scale.tolist()),
             moving if self.scenes and self.scenario.motion.values else None,
             held=self.hold != "zero",
             varying=not self.believed.values,
@@ -148,6 +154,7 @@ class Plan:
     def _batch(self, columns: Columns, camera: Camera) -> Array:
         """Statistics of runs whose samples have the same times, shape (L, number of statistics)."""
         observer, loop, time = self.observer, self.loop, camera.times(self.duration)
+        surface = self.scenario.surface
         runs, elapsed = len(columns["seed"]), time - time[0]
         if loop.moving:
             scene, truth = np.zeros(runs, dtype=int), np.zeros((1, 1, 1))
@@ -160,6 +167,7 @@ class Plan:
         arriving = np.full(len(grid), -1)
         arriving[index] = np.arange(len(time))
         known, motion = self._known(columns, grid)
+        known = known / self.scenario.unit ** np.array([*self.believed.lengths, *(0 for _ in surface.parameters)])
         gains = np.stack([_column(columns, gain.name, gain.value) for gain in observer.gains], axis=-1)
         places = list(loop.statistics.measured)
         start, corrects = self._start(columns, begins[:, places] + noise[film, 0], gains, known[motion, 0])
@@ -271,8 +279,8 @@ class Plan:
         estimates = [
             first[:, form.measured.index(name)]
             if name in form.measured and name not in given
-            else _column(columns, f"start_{name}", self.start.get(name, 0.0))
-            for name in map(str, form.coordinates)
+            else _column(columns, f"start_{name}", self.start.get(name, 0.0)) * factor
+            for name, factor in zip(map(str, form.coordinates), self.scale.tolist(), strict=True)
         ]
         symbols = (
             *form.x1,

@@ -159,7 +159,8 @@ def sensitivity(
         signal = _mapped(motion, lambda rows, more=direction: np.hstack([rows, np.tile(more, (len(rows), 1))]))
         changed = replace(motion, parameters=(*motion.parameters, *slopes(moved)), signal=signal)
         runs.append(track(recording, varied, start, believed=changed, **settings))
-    derivatives = np.stack([each.estimate for each in runs], axis=-1)
+    of_unit = [recording.unit ** motion.lengths[motion.parameters.index(symbol)] for symbol in moved]
+    derivatives = np.stack([each.estimate for each in runs], axis=-1) / of_unit
     derivatives[np.isnan(run.estimate)] = np.nan
     return Sensitivity(run, tuple(symbol.name for symbol in moved), derivatives, _sizes(motion, moved, recording.time))
 

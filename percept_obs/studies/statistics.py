@@ -38,9 +38,14 @@ STATISTICS = MappingProxyType(
 """Unit and meaning of each statistic; the bound needs a prior, NEES a covariance, NIS a measurement update as well."""
 
 
-def accumulated(observer: Observer, coordinates: Sequence[str] = ()) -> Statistics:
-    """Expressions to accumulate during a run: relative error of the distance, or absolute errors of coordinates."""
-    form, estimate = observer.form, dict(zip(observer.form.coordinates, observer.estimate, strict=True))
+def accumulated(observer: Observer, coordinates: Sequence[str] = (), scale: Sequence[float] = ()) -> Statistics:
+    """Expressions to accumulate during a run: relative error of the distance, or absolute errors of coordinates.
+
+    The scale has the factors of the coordinates by the unit of length in which the observer runs, see `Recording`.
+    """
+    form, units = observer.form, [sp.S.One if factor == 1 else sp.Float(factor) for factor in scale]
+    units = units or [sp.S.One for _ in form.coordinates]
+    estimate = {x: e / unit for x, e, unit in zip(form.coordinates, observer.estimate, units, strict=True)}
     truth = {symbol: sp.Symbol(f"true_{symbol.name}", real=True) for symbol in form.coordinates}
     inverse = form.coordinates[-1]
     named = [symbol for symbol in form.coordinates if symbol.name in coordinates]
@@ -48,7 +53,8 @@ def accumulated(observer: Observer, coordinates: Sequence[str] = ()) -> Statisti
     places = [form.coordinates.index(x) for x in form.x1]
     means = []
     if observer.covariance is not None:
-        P = sp.Matrix(observer.covariance)
+        into = sp.diag(*(1 / unit for unit in units))
+        P = into * sp.Matrix(observer.covariance) * into
         means.append(_normalised(P, [truth[s] - estimate[s] for s in form.coordinates]))  # NEES
         variance = {gain.name: gain.symbol for gain in observer.gains}.get("noise_variance")
         if variance is not None and observer.equations.update:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -72,14 +73,14 @@ def choose_and_report(
     references : sequence of str
         "truth", or names of measured distances of the recordings; gains are chosen by the first of them.
     length : float, optional
-        The unit in metres in which the candidates' gains are stated; `own_length` of the recordings to choose on when
-        left out, so that nothing depends on the unit of length.
+        The recordings' unit of length for all observers, see `Recording`; `own_length` of those to choose on when left
+        out.
 
     Returns
     -------
     pandas.DataFrame
         One row for an observer, a reference and a time, with relative errors of the distance over those reporting
-        recordings that last as long: observer, gains (the chosen ones, in metres), at_edge (names of gains at the
+        recordings that last as long: observer, gains (the chosen ones, by the length), at_edge (names of gains at the
         smallest or largest of their candidates, beyond which better ones may lie), reference, after (s), median,
         nine_in_ten (the 90 % quantile), behind (number of recordings without an estimate in front of the camera
         then), reset, diverged (numbers of recordings), cost (seconds of computing for a second of data), refusal (why
@@ -120,12 +121,13 @@ def choose_and_report(
     if not len(references) or not len(after):
         raise ValueError(f"{len(references)} references and {len(after)} times: at least one of each is needed")
     unit = own_length(form, choosing) if length is None else length
+    choosing, reporting = ([replace(each, unit=unit) for each in half] for half in (choosing, reporting))
     questions = list(product(references, after))
     rows: list[dict[str, Any]] = []
     for make, settings in bar(candidates.items(), "choosing gains", unit="observer"):
         refusal = make.refusal(form)
         try:
-            tried = [] if refusal else [make(form, **gains).in_units(unit) for gains in settings]
+            tried = [] if refusal else [make(form, **gains) for gains in settings]
             chosen = best_setting(choosing, tried, follow, after, references[0]) if tried else None
         except DoesNotFit as error:
             refusal, chosen = str(error), None
@@ -172,16 +174,19 @@ def _errors(
 
 
 def own_length(form: PartitionedSystem, recordings: Sequence[Recording]) -> float:
-    """Length in metres in which |w| has the root mean square `USUAL_SPEED` along recordings; 1 without a form.
+    """Length in which the part of |w| with one has the root mean square `USUAL_SPEED`; |b| without a form.
 
     The error of a hidden coordinate shrinks at a rate that grows with |w|, which depends on how fast the camera moves
     past a point and not on how far away the point is.
     """
     if form.culprits:
-        return 1.0
-    squares = [np.trace(information_along(form, recording), axis1=1, axis2=2) for recording in recordings]
+        squares = [np.array([recording.motion.speed(recording.time) ** 2]) for recording in recordings]
+    else:
+        lengths = dict(zip(form.coordinates, recordings[0].view.lengths, strict=False))
+        found = [(each, np.diagonal(information_along(form, each), axis1=1, axis2=2)) for each in recordings]
+        squares = [each.unit**2 * w[:, [lengths[x] != 0 for x in form.x2]].sum(axis=1) for each, w in found]
     speed = float(np.sqrt(np.mean(np.concatenate(squares))))
-    return speed / USUAL_SPEED if speed > 0 else 1.0
+    return speed / USUAL_SPEED or 1.0
 
 
 def _at_edge(chosen: Gains, observers: Sequence[Observer]) -> list[str]:

@@ -13,7 +13,17 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, vectorised
 from percept_obs.system.signal import OverTime, Signal
-from percept_obs.validation import MOST_TERMS, Coefficients, are_numbers, checked, limit, matrix, numbers, warn
+from percept_obs.validation import (
+    MOST_TERMS,
+    Coefficients,
+    are_numbers,
+    checked,
+    limit,
+    matrix,
+    numbers,
+    positive,
+    warn,
+)
 
 Coefficient = tuple[Any, sp.ImmutableMatrix]
 
@@ -59,6 +69,32 @@ class Motion:
     b: sp.ImmutableMatrix
     parameters: tuple[sp.Symbol, ...]
     signal: Signal | None = None
+
+    @cached_property
+    def lengths(self) -> tuple[int, ...]:
+        """Power of length of each parameter: 1 for those of b, else 0."""
+        return tuple(int(symbol in self.b.free_symbols) for symbol in self.parameters)
+
+    def speed(self, times: Array) -> float:
+        """Root mean square of |b| at some times, with 0 for symbols that are no parameters."""
+        b = self.b.xreplace(dict.fromkeys(self.b.free_symbols - set(self.parameters), sp.S.Zero))
+        entries = np.stack(vectorised(self.parameters, list(b))(*self.known(times).T))
+        return float(np.sqrt((entries**2).sum(axis=0).mean()))
+
+    def refuse_unit(self, unit: float) -> None:
+        """Raise ValueError if a unit of length is not positive, or is not 1 while b holds lengths in its formula."""
+        positive(**{"the unit of length": unit})
+        if unit != 1 and not self._scales:
+            raise ValueError(
+                f"the unit of length is {unit:.4g}, but the {self.name} motion has b = {list(self.b)}, with lengths in "
+                "its formula; give b as numbers or as a function of time, or leave the unit at 1"
+            )
+
+    @cached_property
+    def _scales(self) -> bool:
+        """True if all lengths are parameters."""
+        twice = self.b.xreplace({symbol: 2 * symbol for symbol in self.b.free_symbols - self.A.free_symbols})
+        return bool((twice - 2 * self.b).expand().is_zero_matrix)
 
     @property
     def values(self) -> dict[sp.Symbol, float]:

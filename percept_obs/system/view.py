@@ -46,6 +46,10 @@ class View(Protocol):
     def point_shape(self) -> tuple[int, ...]:
         """Shape of arrays with one entry a point: () for one point, (p,) for p of them."""
 
+    @property
+    def lengths(self) -> tuple[int, ...]:
+        """Power of length of each coordinate, and then of each parameter."""
+
     def fits(self, other: Any) -> bool:
         """Return True if formulas for this view hold for the other."""
 
@@ -77,6 +81,11 @@ class OnePoint(ABC):
     @abstractmethod
     def image_coordinates(self) -> tuple[sp.Symbol, ...]:
         """Symbols of the coordinates that can be measured."""
+
+    @property
+    @abstractmethod
+    def lengths(self) -> tuple[int, ...]:
+        """Power of length of each coordinate, and then of each parameter."""
 
     @abstractmethod
     def inverse(self, coordinates: ArrayLike) -> Array:

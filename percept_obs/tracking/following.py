@@ -158,8 +158,9 @@ def _follow_one_point(
     samples = recording.outputs[:, columns]
     _warn_of_long_steps(observer, grid)
     times = grid.instants if believed.constants is None else grid.times[:1]  # many instants take long
-    known = known_signals(believed, recording.view, times)
-    named = named_start(start, form.coordinates)
+    known = known_signals(believed, recording.view, times, recording.unit)
+    scale = dict(zip(map(str, recording.view.coordinates), recording.scale.tolist(), strict=True))
+    named = {name: value * scale.get(name, 1.0) for name, value in named_start(start, form.coordinates).items()}
     outputs = dict(zip(form.measured, samples[0].tolist(), strict=True))
     initial = state_at_start(observer, outputs, named, zip(form.parameters, known[0].tolist(), strict=True))
     arriving = np.empty((0, len(form.measured)))
@@ -176,7 +177,7 @@ def _follow_one_point(
     estimate, unobservable = _estimates(observer, states, filled, at_samples, recording.elapsed, language)
     diverged_at = None if trace.diverged is None else float(grid.times[trace.diverged])
     resets = grid.times[trace.resets.nonzero()[0]]
-    return Run(recording, observer, estimate, states, diverged_at, grid.hold, resets, unobservable)
+    return Run(recording, observer, estimate / recording.scale, states, diverged_at, grid.hold, resets, unobservable)
 
 
 def _estimates(
@@ -263,6 +264,7 @@ def _require_fit(grid: TimeGrid, observer: Observer, believed: Motion) -> None:
         )
     if grid.longest_hold < math.inf:
         raise DoesNotFit(f"the {observer.name} observer needs its outputs at all times; leave longest_hold out")
+    believed.refuse_unit(recording.unit)
     if observer.constant_motion and believed.signal is not None and not believed.signal.constant:
         raise DoesNotFit(
             f"the {observer.name} observer needs a motion with constant coefficients, but the one that it is to "

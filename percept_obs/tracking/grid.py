@@ -82,11 +82,12 @@ def time_grid(recording: Recording, step: float, hold: Hold, longest_hold: float
     return TimeGrid(recording, *step_grid(recording.time, step), hold, longest_hold)
 
 
-def known_signals(motion: Motion, view: View, times: Array) -> Array:
-    """Parameters of motion and view at some times, shape (T, p), or (1, p) if all are constant."""
+def known_signals(motion: Motion, view: View, times: Array, unit: float = 1.0) -> Array:
+    """Parameters of motion and view at some times by a unit of length, shape (T, p), or (1, p) if all are constant."""
     rows = motion.known(times) if motion.constants is None else motion.constants
     shape = [view.values[symbol] for symbol in view.parameters]
-    return np.hstack([rows, np.tile(np.array(shape, dtype=float), (len(rows), 1))]) if shape else rows
+    rows = np.hstack([rows, np.tile(np.array(shape, dtype=float), (len(rows), 1))]) if shape else rows
+    return rows if unit == 1 else rows / unit ** np.array([*motion.lengths, *view.lengths[len(view.coordinates) :]])
 
 
 def _bridged(recording: Recording, hold: Hold) -> Array:

@@ -118,7 +118,7 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
     inverse = np.argsort(order)
     size, measured, view = len(plant.state), len(form.x1), recording.view
     known_noise = (recording.noise_variance or 0.0) if isinstance(view, ImagingSurface) else 0.0
-    at_end = recording.motion.known(recording.time[-1:])
+    at_end, scale = recording.motion.known(recording.time[-1:]), recording.scale
 
     def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array]:
         samples = recording.outputs[first:, columns]
@@ -129,7 +129,7 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         backwards = _backwards(plant, recording, first, measured)
         plain = np.zeros(size)
         plain[:measured] = [column[np.isfinite(column)][-1] for column in samples.T]
-        begins = [plain, *(guess[inverse] for guess in guesses)]
+        begins = [plain, *((guess * scale)[inverse] for guess in guesses)]
         start = min(begins, key=lambda x: float(((samples - backwards(x))[seen] ** 2).sum()))
         finest = max(FINEST * float(np.abs(samples[seen]).max()), math.sqrt(known_noise)) or FINEST
         noise = np.ones(measured)
@@ -138,7 +138,7 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
             def residuals(x: Array, noise: Array = noise) -> Array:
                 return np.asarray(((backwards(x) - samples) / noise)[seen])
 
-            solution = least_squares(residuals, start, x_scale="jac", max_nfev=50)
+            solution = least_squares(residuals, start, x_scale="jac", diff_step=1e-5, max_nfev=50)
             start, rest = solution.x, np.where(seen, samples - backwards(solution.x), 0.0)
             spread = np.sqrt((rest**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
             if _inflation(rest / np.maximum(spread, finest)) > 1:  # residuals drift: trust no output more than others
@@ -147,7 +147,8 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         weighted = solution.jac * (before / noise)[np.nonzero(seen)[1]][:, None]
         deviations = np.array([_deviation(weighted, k) for k in range(size)])[order]
         deviations *= _inflation(rest / noise) if (spread > finest).any() else 1.0
-        return start[order], relative_deviation(view, start[order], deviations, at_end), noise
+        estimate = start[order] / scale
+        return estimate, relative_deviation(view, estimate, deviations / scale, at_end), noise
 
     return fit
 
@@ -160,7 +161,7 @@ def _backwards(plant: Equations, recording: Recording, first: int, measured: int
     span = time[-1] - time[0]
     nodes = np.linspace(time[-1], time[0], 1 + max(3, math.ceil(span / max(LONGEST_STEP, span / SPLIT))))
     steps = np.diff(nodes)
-    known = known_signals(recording.motion, recording.view, instants(nodes))
+    known = known_signals(recording.motion, recording.view, instants(nodes), recording.unit)
     table = Table(steps, np.empty((len(steps), EACH + 1, 0)), known, np.empty((len(nodes), 0)))
 
     def outputs(x: Array) -> Array:

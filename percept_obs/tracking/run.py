@@ -39,7 +39,7 @@ class Run:
     estimate : array of shape (K, n)
         Estimates of the view's coordinates; NaN from `diverged_at` on.
     state : array of shape (K, s)
-        The observer's state.
+        The observer's state, with lengths by the recording's unit.
     diverged_at : float or None
         Time at which the state stopped being finite, by the recording's clock.
     hold : "zero", "first" or "exact"
@@ -122,7 +122,8 @@ class Run:
         if observer.covariance is None:
             raise ValueError(f"the {observer.name} observer claims no covariance; the extended Kalman filter does")
         entries = vectorised(observer.equations.state, list(observer.covariance))(*self.state.T)
-        return np.stack(entries, axis=-1).reshape(len(self.state), *observer.covariance.shape)
+        inside = np.stack(entries, axis=-1).reshape(len(self.state), *observer.covariance.shape)
+        return inside / np.outer(self.recording.scale, self.recording.scale)
 
     @cached_property
     def nis(self) -> Array:

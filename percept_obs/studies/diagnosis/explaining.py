@@ -74,6 +74,7 @@ def explain(recording: Recording) -> Explained:
     from scipy.optimize import leastsq
 
     surface, seen = recording.imaging_surface, np.isfinite(recording.outputs)
+    unit = recording.unit
     middle, maps = len(seen) // 2, _maps_from_the_middle(recording.motion, recording.time.tobytes())
     order = [surface.image_coordinates.index(s) for s in surface.image_coordinates if s.name in recording.names]
     image = vectorised(POINT, surface.image, surface.values)
@@ -81,7 +82,7 @@ def explain(recording: Recording) -> Explained:
 
     def residuals(x: Array) -> Array:
         with np.errstate(all="ignore"):
-            points = maps[:, :3] @ np.array([*ray(*x[:-1]), x[-1]], dtype=float)  # times the inverse distance
+            points = maps[:, :3] @ np.array([*ray(*x[:-1]), x[-1] / unit], dtype=float)  # times the inverse distance
             found = np.stack(image(*points.T), axis=-1)[:, order]
         found = np.nan_to_num(found, nan=FAR, posinf=FAR, neginf=-FAR)
         return np.asarray(np.where(seen, recording.outputs - found, 0.0).ravel())

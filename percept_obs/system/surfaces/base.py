@@ -127,6 +127,13 @@ class ImagingSurface(OnePoint):
         used = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray)))
         return tuple(sorted(used - set(POINT) - set(self.image_coordinates), key=lambda s: s.name))
 
+    @cached_property
+    def lengths(self) -> tuple[int, ...]:
+        """Power of length of each coordinate, by its value when the point is twice as far; 0 for the parameters."""
+        points = np.array([SOME_POINT, [2 * entry for entry in SOME_POINT]], dtype=float)
+        near, far = np.stack(self._evaluate(POINT, (*self.image, 1 / self.distance), points), axis=-1)
+        return (*np.log2(far / near).round().astype(int).tolist(), *(0 for _ in self.parameters))
+
     @property
     def intermediates(self) -> dict[sp.Symbol, sp.Expr]:
         """Values of the named roots of the ray, by their letters."""
