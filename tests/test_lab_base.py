@@ -43,6 +43,13 @@ def test_the_bundle_loads_nothing_from_a_network():
     assert "http" not in base.BUNDLE.read_text().replace("http://www.w3.org/", "")
 
 
+def test_a_name_is_shown_and_is_never_markup():
+    bad = "<img src=x onerror=alert(1)>"
+    shown = markup.markup(sp.Symbol(bad) + sp.MatrixSymbol(bad, 1, 1)[0, 0] + sp.Symbol(f"x_{bad}"))
+    assert "<img" not in shown + markup.words(f"while {bad}")
+    assert shown.count("&lt;img") == 3
+
+
 def test_an_error_from_the_page_s_settings_shows_and_goes_with_the_next_good_ones():
     lab = observer_lab("ma2005_eq35")
     with pytest.raises(ValueError, match="whole number"):

@@ -270,6 +270,9 @@ def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
     def nothing(form):
         return None
 
+    def fails(form):
+        return {"y1": 1}[form.measured]
+
     deep = ImagingSurface("deep", (X / Z, Y / Z, (X + Y) / Z), Z, (y1, y2, 1))
     rigid_form = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
     for brought, reason in (
@@ -278,6 +281,7 @@ def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
             "rounded cannot be used in this lab: the page cannot run it: floor.* cannot be printed",
         ),
         ({"observers": [nothing]}, "nothing gave NoneType for a form; it must give an Observer"),
+        ({"observers": [fails]}, r"fails for y1, y2 measured on the pinhole: KeyError: \('y1', 'y2'\)"),
         ({"observers": [cubic, cubic]}, "there is an observer cubic already"),
         ({"observers": [3]}, "3 is no observer; bring its name, a function of a form, or an Observer"),
         ({"observers": "cubic"}, "it must be a list of names, functions of a form, or observers"),

@@ -11,13 +11,28 @@ from examples import AFFINE, BOTH, FORMS, MOTIONS, ON_SPHERE, ONE, SQUARE, SURFA
 from refusals import refuses
 from scipy.integrate import solve_ivp
 
-from percept_obs import NotAffine, PerspectiveSystem, ekf, ibo, record, rigid, scenarios, smo, track, with_point
+from percept_obs import (
+    ImagingSurface,
+    NotAffine,
+    PerspectiveSystem,
+    affine,
+    ekf,
+    ibo,
+    record,
+    rigid,
+    scenarios,
+    smo,
+    track,
+    with_point,
+)
 from percept_obs.compile import vectorised
+from percept_obs.compile.equations import Equations
 from percept_obs.observers import (
     OBSERVERS,
     Gain,
     NeedsMoreOutputs,
     NotIntegrable,
+    Observer,
     de_luca,
     immersion_and_invariance,
     integral_sliding_mode,
@@ -26,7 +41,9 @@ from percept_obs.observers import (
     range_identification,
     spica,
 )
-from percept_obs.observers.parts import first_seen, hats, sigma2
+from percept_obs.observers.parts import first_seen, hats, innovation, output_injection, sigma2
+from percept_obs.system.motion import TIME
+from percept_obs.system.surfaces.base import X, Y, Z
 
 PAIRS = [
     pytest.param(make, form, id=f"{make.key}-{name}")
@@ -152,6 +169,46 @@ test_gains_out_of_range_are_refused = refuses(
     (ibo, {"noise_variance": -1}, "it is a variance"),
     (smo, {"boundary_layer": 0}, "divides by the error"),
     (ekf, {"noise_variance": 0}, "R > 0"),
+)
+
+
+MARKUP = "k<img src=x onerror=alert(1)>"
+
+
+def of_parts(**changes):
+    """An observer of one output whose parts are changed."""
+    x = (*ONE.x1, *ONE.x2)
+    flow = output_injection(ONE, innovation(ONE), 1, 1)
+    parts = {"state": hats(x), "flow": flow, "start": hats(x), "estimate": hats(ONE.coordinates), "gains": (), "k": ()}
+    parts |= changes
+    equations = Equations(parts["state"], parts["flow"], ONE.x1, ONE.parameters, parts["k"])
+    return Observer("mine", ONE, equations, parts["estimate"], parts["gains"], parts["start"])
+
+
+test_names_that_would_be_code_or_markup_are_refused_where_they_are_made = refuses(
+    lambda make, name: make(name),
+    *(
+        (lambda name: Gain(sp.Symbol("k"), name, 1, 0, 2, "1", "nothing"), name, "a gain has the name")
+        for name in ("k = 0; alert(1); var x", 'k"><img src=x onerror=alert(1)>', "", "lambda", "__proto__", "a b", 5)
+    ),
+    *(
+        (make, MARKUP, "a symbol .*; give it a name of letters")
+        for make in (
+            lambda name: Gain(sp.Symbol(name), "k", 1, 0, 2, "1", "nothing"),
+            lambda name: of_parts(state=(*hats(ONE.x1), sp.Symbol(name), sp.Symbol("c"))),
+            lambda name: affine(sp.Symbol(name) * sp.eye(3), [0, 0, 0]),
+            lambda name: affine(sp.Function(name)(TIME) * sp.eye(3), [0, 0, 0]),
+            lambda name: ImagingSurface("s", (X / Z, Y / Z), Z * sp.Symbol(name), (1, 1, 1)),
+        )
+    ),
+)
+test_parts_that_do_not_fit_together_are_refused = refuses(
+    lambda changes: of_parts(**changes),
+    ({"start": sp.symbols("wf1 wf2 wf3", real=True)}, "start of the mine observer uses wf1, wf2, wf3, which nothing"),
+    ({"start": hats(ONE.x1)}, r"the start .* has 1 entries; pass start=: 3 entries in measured outputs"),
+    ({"estimate": hats(ONE.x1)}, "the estimate of the mine observer has 1 entries"),
+    ({"estimate": sp.symbols("a b c")}, "the estimate of the mine observer uses a, b, c"),
+    ({"k": (sp.Symbol("k"),)}, "no Gain for k"),
 )
 
 

@@ -11,7 +11,7 @@ import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from percept_obs.compile.intermediate import definitions, written_out
-from percept_obs.validation import derived, set_fields
+from percept_obs.validation import derived, refuse_names, set_fields
 
 Symbols = tuple[sp.Symbol, ...]
 Expressions = tuple[sp.Expr, ...]
@@ -39,6 +39,7 @@ class Equations:
         set_fields(self, **{name: derived(getattr(self, name), f"the equations' {name}") for name in names})
         set_fields(self, update=tuple(derived(block, "an update") for block in self.update))
         listed = (*self.state, *self.measured, *self.parameters, *self.gains)
+        refuse_names(listed, "the equations")
         if len({symbol.name for symbol in listed}) != len(listed):
             raise ValueError(f"a symbol is listed twice among {', '.join(map(str, listed))}")
         blocks = (self.flow, *self.update, *((self.reset,) if self.reset else ()))

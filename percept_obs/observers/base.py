@@ -93,6 +93,11 @@ class Observer:
     fastest : FastestRate, optional
         Limit of the integration step, if it is known.
 
+    Raises
+    ------
+    ValueError
+        If the estimate or the start has another length or strange symbols, or a gain of the equations is missing.
+
     See Also
     --------
     track : Lets it follow a recording.
@@ -119,6 +124,11 @@ class Observer:
     constant_motion: bool = False
     unobservable: tuple[Unobservable, ...] = ()
     fastest: FastestRate | None = None
+
+    def __post_init__(self) -> None:
+        _refuse_strangers(self.name, self.form, self.equations, self.estimate, self.start)
+        if missing := set(self.equations.gains) - set(self.gain_values):
+            raise ValueError(f"the {self.name} observer has no Gain for {', '.join(sorted(map(str, missing)))}")
 
     def with_gains(self, **values: float) -> Observer:
         """Observer with other gains, all in range; nothing is compiled again."""
@@ -221,6 +231,26 @@ class Observer:
         return self.equations.xreplace(removed)._repr_latex_()
 
 
+@lru_cache(maxsize=512)  # gains change often, and these never
+def _refuse_strangers(
+    name: str, form: PartitionedSystem, equations: Equations, estimate: Expressions, start: Expressions
+) -> None:
+    """Refuse an estimate and a start of other lengths than needed, or in symbols that nothing provides."""
+    known = {*form.x1, *form.parameters, *equations.gains}
+    asked = {*hats(form.coordinates), *first_seen(form.x1)}
+    for part, entries, length, given, remedy in (
+        ("estimate", estimate, len(form.coordinates), {*equations.state}, "pass estimate="),
+        ("start", start, len(equations.state), asked, "pass start="),
+    ):
+        strange = sorted(map(str, sp.Tuple(*entries).free_symbols - known - given))
+        if strange or len(entries) != length:
+            problem = f"uses {', '.join(strange)}, which nothing provides" if strange else f"has {len(entries)} entries"
+            raise ValueError(
+                f"the {part} of the {name} observer {problem}; {remedy}: {length} entries in measured outputs, "
+                f"parameters, gains and {', '.join(sorted(map(str, given)))}"
+            )
+
+
 def state_at_start(
     observer: Observer,
     outputs: Mapping[str, float],
@@ -282,4 +312,5 @@ def with_point(observer: Observer) -> Observer:
     reset = (*point, *eq.reset) if eq.reset else ()
     flow = (*form.rate, *eq.flow)
     together = replace(eq, state=(*point, *eq.state), flow=flow, measured=(), update=(), reset=reset)
-    return replace(observer, name=f"{observer.name} with its point", equations=together)
+    start = (*hats(point), *observer.start)  # the point as it is wanted
+    return replace(observer, name=f"{observer.name} with its point", equations=together, start=start)

@@ -1,5 +1,6 @@
 """Gains: constants of an observer that a user may choose, and grids of them."""
 
+import keyword
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.validation import refuse_kind, set_fields
+from percept_obs.validation import refuse_kind, refuse_names, set_fields
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Gain:
     Raises
     ------
     ValueError
-        If the value is not a finite number, or does not fulfil the condition.
+        If the value is not a finite number, or does not fulfil the condition, or the name is none in Python.
 
     See Also
     --------
@@ -63,6 +64,9 @@ class Gain:
     reason: str = ""
 
     def __post_init__(self) -> None:
+        if not str(self.name).isidentifier() or keyword.iskeyword(self.name) or self.name.startswith("_"):
+            raise ValueError(f"a gain has the name {self.name!r}; give it a name in Python, such as 'gain'")
+        refuse_names([self.symbol], self.name)
         refuse_kind("the gain", self.name, self.value, float)
         value = float(self.value)
         set_fields(self, value=value)

@@ -15,6 +15,7 @@ from percept_obs.validation.expressions import derived as derived
 from percept_obs.validation.expressions import expression as expression
 from percept_obs.validation.expressions import expressions as expressions
 from percept_obs.validation.expressions import matrix as matrix
+from percept_obs.validation.expressions import refuse_names as refuse_names
 from percept_obs.validation.kinds import Coefficients as Coefficients
 from percept_obs.validation.kinds import Entries as Entries
 from percept_obs.validation.kinds import Kind as Kind

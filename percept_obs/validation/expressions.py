@@ -9,8 +9,19 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from percept_obs.validation.arguments import WrongKind, described
+
+UNFIT = set('<>&"`') | {chr(code) for code in range(32)}
+"""Characters that no symbol's name has, for they would be read as markup."""
+
+
+def refuse_names(symbols: Iterable[sp.Basic], name: str) -> None:
+    """Raise a ValueError for a symbol whose name is empty, or would be read as markup where it is shown."""
+    for symbol in symbols:
+        if not str(symbol) or UNFIT & set(str(symbol)):
+            raise ValueError(f"{name} has a symbol {str(symbol)!r}; give it a name of letters, digits, _ or ^")
 
 
 def expression(value: Any, name: str) -> sp.Expr:
@@ -21,6 +32,7 @@ def expression(value: Any, name: str) -> sp.Expr:
     if isinstance(value, np.ndarray) and not value.ndim:
         value = value[()]
     if isinstance(value, sp.Expr):
+        refuse_names({*value.free_symbols, *(each.func for each in value.atoms(AppliedUndef))}, name)
         good = not value.has(sp.oo, -sp.oo, sp.zoo, sp.nan, sp.I)
     else:
         good = isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

@@ -2,8 +2,11 @@
 
 import re
 from collections.abc import Mapping
+from html import escape
+from typing import Any
 
 import sympy as sp
+from sympy.printing.mathml import MathMLPresentationPrinter
 
 from percept_obs.compile import in_letters
 
@@ -59,7 +62,14 @@ def row(*texts: str) -> str:
 
 def words(text: str) -> str:
     """MathML of words beside a formula."""
-    return f"<mtext>&nbsp;{text}&nbsp;</mtext>"
+    return f"<mtext>&nbsp;{escape(text)}&nbsp;</mtext>"
+
+
+class _Escaping(MathMLPresentationPrinter):
+    """sympy's printer, which escapes nothing, with names that are no markup."""
+
+    def _print_Symbol(self, sym: Any, style: str = "plain") -> Any:
+        return super()._print_Symbol(sp.Symbol(escape(sym.name)), style)
 
 
 def _mathml(expression: object) -> str:
@@ -76,5 +86,5 @@ def _mathml(expression: object) -> str:
         taken = [term for term in expression.args if term.as_coeff_mmul()[0].is_negative]
         added = "<mo>+</mo>".join(_mathml(term) for term in expression.args if term not in taken)
         return f"<mrow>{added}{''.join(f'<mo>-</mo>{_mathml(-term)}' for term in taken)}</mrow>"
-    text = re.sub(r"\s*\n\s*", "", str(sp.mathml(expression, printer="presentation")))
+    text = re.sub(r"\s*\n\s*", "", str(_Escaping().doprint(expression)))
     return text.replace("<mi>ybar</mi>", "<mover><mi>y</mi><mo>¯</mo></mover>")

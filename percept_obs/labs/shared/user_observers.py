@@ -71,7 +71,13 @@ Maker = Family | UserObserver
 
 @lru_cache(maxsize=64)
 def _made(make: Callable[..., Observer], form: PartitionedSystem, options: Any, name: str) -> Observer:
-    made = make(form, **dict(options))
+    try:
+        made = make(form, **dict(options))
+    except ValueError:
+        raise
+    except Exception as error:
+        seen = f"{', '.join(form.measured)} measured on the {form.view.name if form.view else 'system'}"
+        raise ValueError(f"{name} fails for {seen}: {type(error).__name__}: {error}") from error
     if not isinstance(made, Observer):
         raise ValueError(f"{name} gave {type(made).__name__} for a form; it must give an Observer")
     if not same_system(made.form, form):

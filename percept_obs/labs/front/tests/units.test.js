@@ -99,6 +99,7 @@ test("a text that fails to load says which, and may be loaded once mended", asyn
   await modules.prepare("flat y1 one", { run: "function run() { return 1; }" });
   assert.equal(modules.get("flat y1 one").run(), 1);
   assert.match(moduleText({ run: "function run() {}" }), /^export const run/);
+  assert.throws(() => moduleText({ "k = 0; alert(1); var x": "function run() {}" }), /is no name of a function/);
 });
 
 test("a symmetric matrix's eigenvalues are found, all of them and the extreme ones", () => {

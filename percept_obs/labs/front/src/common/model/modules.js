@@ -10,8 +10,10 @@ async function importText(text) {
   }
 }
 
-/** Text of a module that exports each function under its key. */
+/** Text of a module that exports each function under its key, which is a name and no more of a program. */
 export function moduleText(functions) {
+  const strange = Object.keys(functions).find((key) => !/^[\p{ID_Start}_][\p{ID_Continue}]*$/u.test(key));
+  if (strange !== undefined) throw new Error(`${JSON.stringify(strange)} is no name of a function`);
   return Object.entries(functions)
     .map(
       ([key, text]) => `export const ${key} = (() => {\n${text}\nreturn ${text.match(/^function (\w+)/)?.[1]};\n})();`,
