@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from camera_paths import poses, seen, write_stereo_mat
+from scipy.io import loadmat, savemat
 from utias_folder import utias_folder
 
 from percept_obs import Clock, PixelCamera, Poses, Recording, pinhole, read_euroc, read_tum, sphere
@@ -90,6 +91,18 @@ def test_a_stereo_file_is_read_back(tmp_path, landmarks):
     assert (recordings[0].truth is not None) == landmarks
 
 
+def test_poses_beyond_the_images_are_cut_and_told(tmp_path):
+    """Most drives of KITTI have them."""
+    write_stereo(tmp_path / "s.mat")
+    values = {key: each for key, each in loadmat(tmp_path / "s.mat").items() if not key.startswith("__")}
+    longer = {key: np.hstack([values[key], np.full((3, 40), np.nan)]) for key in ("r_i_vk_i", "theta_vk_i")}
+    savemat(tmp_path / "long.mat", values | longer)
+    with pytest.warns(Unlikely, match="240 poses and 200 times: the first 200 poses are read, and the last 40"):
+        back = read_stereo_mat(tmp_path / "long.mat")
+    for name, each in vars(read_stereo_mat(tmp_path / "s.mat").path).items():
+        np.testing.assert_array_equal(getattr(back.path, name), each, err_msg=name)
+
+
 @pytest.mark.parametrize("camera", [None, CAMERA, LENS], ids=["image coordinates", "pixels", "pixels behind a lens"])
 @pytest.mark.parametrize("clock", [Clock(), Clock(zero=500, tick=1e-3)], ids=repr)
 def test_a_table_is_read_back(tmp_path, camera, clock):
@@ -159,9 +172,35 @@ def test_rows_without_a_motion_are_left_out_and_told(tmp_path):
         first, _ = Recording.from_csv(tmp_path / "t.csv", known, point="point_id")
     assert first.time[0] >= 0.5
     assert first.time[-1] < 1.5
-    (tmp_path / "t.csv").write_text("time,id,y1,y2\n0,a,0,0\n0.1,a,0,0\n0.1,b,0,0\n")
-    with pytest.warns(Unlikely, match="1 sightings of a single sample are left out"):
-        assert len(Recording.from_csv(tmp_path / "t.csv", MOTION, point="id")) == 1
+    for last, told in (
+        ("0.1,b,0,0", "1 sightings of a single sample"),
+        ("0,b,,\n0.1,b,,", "1 points without any sample"),
+    ):
+        (tmp_path / "t.csv").write_text(f"time,id,y1,y2\n0,a,0,0\n0.1,a,0,0\n{last}\n")
+        with pytest.warns(Unlikely, match=f"{told} are left out"):
+            assert len(Recording.from_csv(tmp_path / "t.csv", MOTION, point="id")) == 1
+
+
+def test_a_table_with_comments_and_spaces_is_the_plain_one(tmp_path):
+    """Plain tables are read in another way."""
+    rows = [
+        "time , id,u,v, note",
+        "0.50, b ,300,200,x",
+        "0.5,a,301,,",
+        "0.60,b,302.5,1e2,y",
+        "0.6,a,nan,2,",
+        "0.7,a,1,3,",
+    ]
+    rows += ["0.8,a,1,4,z"]
+    (tmp_path / "t.csv").write_text("# a comment\n\n" + "\n# another\n".join(rows))
+    (tmp_path / "plain.csv").write_text("\n".join(rows).replace(" ", ""))
+    own, plain = (
+        Recording.from_csv(tmp_path / name, MOTION, camera=CAMERA, point="id") for name in ("t.csv", "plain.csv")
+    )
+    assert [each.source[-7:] for each in own] == [each.source[-7:] for each in plain] == ["point b", "point a"]
+    for one, two in zip(own, plain, strict=True):
+        np.testing.assert_array_equal(one.time, two.time)
+        np.testing.assert_array_equal(one.outputs, two.outputs)
 
 
 # The real recording, the way of one's own.

@@ -33,6 +33,20 @@ def make(**changes):
     return Recording(**(settings | changes))
 
 
+def test_a_table_of_pandas_is_taken_in_its_order_only():
+    import pandas as pd
+
+    table = pd.DataFrame(OUTPUTS, columns=["y1", "y2"])
+    np.testing.assert_array_equal(make(outputs=table).outputs, OUTPUTS)
+    np.testing.assert_array_equal(make(outputs=pd.DataFrame(OUTPUTS)).outputs, OUTPUTS)
+    with pytest.raises(
+        ValueError, match=r"outputs is a table with the columns y2, y1, but y1, y2 are expected.*\[\['y1'"
+    ):
+        make(outputs=table[["y2", "y1"]])
+    with pytest.raises(ValueError, match="truth is a table with the columns y1, y2, but y1, y2, y3 are expected"):
+        make(truth=table)
+
+
 def test_the_truth_is_the_matrix_exponential():
     scenario = scenarios.ma2005_eq35()
     values = list(scenario.motion.values.values())

@@ -61,7 +61,12 @@ TABLE = "time,id,u,v,depth\n0,a,300,200,2\n0.1,a,301,200,2\n0.2,a,302,200,2\n"
         ("0.1,a", "-0.1,a", "do not increase at row 2"),
         ("0.1,a", "0.1,", "row 2 has no id; every row needs the name of its point"),
         ("id,u", "id,x", "it needs 'u' for the pixels: rename the column, or give its name"),
-        ("id,u,v,", "id,u,u,", "two columns of one name|needs 'v'"),
+        ("id,u,v,", "id,u,u,", "two columns of one name, u, among time, id, u, u, depth"),
+        ("301", "3_01", "'3_01' in row 2 of the column 'u'; write"),
+        ("0.1,a", "0.1_0,a", "row 2 has the time '0.1_0'"),
+        ("301,200", "301 # blurred,200", "'301 # blurred' in row 2 of the column 'u'"),
+        ("0.1,a", "0.1 # blurred,a", "row 2 has the time '0.1 # blurred'"),
+        (TABLE, TABLE.replace("200", ""), "no sample: in no row are all of y1, y2 there"),
         ("time,id,u,v,depth", "time,id,u,v", "rows with more cells than its header"),
         ("301,200,2", "301,200,-2", "has the depth -2 in row 2; a point that is seen is in front of the camera"),
         ("301,200,2", "301,200,0", "has the depth 0 in row 2"),
@@ -80,6 +85,15 @@ def test_tables_that_are_none_are_refused(tmp_path, old, new, message):
     (tmp_path / "t.csv").write_text(TABLE.replace(old, new, 1))
     with pytest.raises(ValueError, match=f"(?s){message}"):
         Recording.from_csv(tmp_path / "t.csv", MOTION, camera=CAMERA, point="id", depth="depth")
+
+
+@pytest.mark.parametrize("header", ["time,y1,Y2", "time,y1,y_2", "time,y1,y2,Y3", "time,y1, y 2 "])
+def test_a_misspelt_column_is_asked_back(tmp_path, header):
+    cells = ",0.1" * header.count(",")
+    (tmp_path / "t.csv").write_text(f"{header}\n0{cells}\n0.1{cells}\n")
+    meant = "y3" if "Y3" in header else "y2"
+    with pytest.raises(ValueError, match=f"the column '.*'; did you mean '{meant}'"):
+        Recording.from_csv(tmp_path / "t.csv", MOTION)
 
 
 def test_a_point_behind_the_camera_has_its_own_error(tmp_path):
@@ -122,6 +136,7 @@ def test_a_clock_that_reads_no_time_is_refused(clock):
         ("t", None, "has no variable t; it needs t, y_k_j"),
         ("t", np.zeros((2, 2)), r"has the shape \(4, 200, 3\), .* of shape \(4, 4, 3\)"),
         ("t", TIME[::-1], "increase strictly"),
+        ("r_i_vk_i", np.zeros((3, 250)), r"has the shape \(3, 250\), .* of shape \(3, 200\)"),
         ("t", TIME[:50], r"has the shape .*expected finite numbers"),
         (
             "theta_vk_i",

@@ -121,6 +121,8 @@ class Recording:
     unit: float = 1.0
 
     def __post_init__(self) -> None:
+        _refuse_order("outputs", self.outputs, list(self.names))
+        _refuse_order("truth", self.truth, [symbol.name for symbol in self.view.coordinates])
         truth = None if self.truth is None else readonly(self.truth)
         distances = MappingProxyType({name: readonly(values) for name, values in self.distances.items()})
         vars(self).update(
@@ -389,3 +391,13 @@ class Recording:
         found = fields_of_recordings(path, motion, surface or pinhole(), *columns, pixel_sigma, clock, gap, shortest)
         recordings = tuple(cls(**fields) for fields in found)
         return recordings[0] if point is None else recordings
+
+
+def _refuse_order(name: str, table: Any, expected: list[str]) -> None:
+    """Refuse a table of pandas whose columns have other names or another order, for arrays are taken by position."""
+    found = [column for column in getattr(table, "columns", ()) if isinstance(column, str)]
+    if found and found != expected:
+        raise ValueError(
+            f"{name} is a table with the columns {', '.join(found)}, but {', '.join(expected)} are expected, in this "
+            f"order: pass table[{expected!r}]"
+        )

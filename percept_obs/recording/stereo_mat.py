@@ -22,11 +22,12 @@ from percept_obs.compile import Array, Flags
 from percept_obs.recording import Recording, Sighting
 from percept_obs.recording.derivatives import Derivative, Quadratic
 from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.plausibility import Unlikely
 from percept_obs.recording.poses import CameraPath, Poses
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
-from percept_obs.validation import checked, numbers
+from percept_obs.validation import checked, numbers, warn
 
 NOT_SEEN = -1.0
 SHORTEST_TRACK = 3.0  # s
@@ -119,7 +120,7 @@ class StereoTracks:
         """Return the recording of some samples of one landmark or of several, seen as a view."""
         return Recording(
             self.time[rows],
-            self.camera.image(self.pixels)[rows, columns],
+            self.camera.image(self.pixels[rows, columns]),
             ("y1", "y2"),
             view,
             self.motion,
@@ -163,6 +164,11 @@ def read_stereo_mat(
     gap : float
         Seconds between two samples of a track at most.
 
+    Warns
+    -----
+    Unlikely
+        If there are poses beyond the last time, as in most drives of KITTI: those of the times are the first ones.
+
     Raises
     ------
     FileNotFoundError
@@ -205,6 +211,15 @@ def read_stereo_mat(
 
     samples, points = np.size(recorded["t"]), recorded["y_k_j"].shape[2] if recorded["y_k_j"].ndim == 3 else 1
     images = np.moveaxis(variable("y_k_j", 4, samples, points), 0, -1)
+    place, turned = recorded["r_i_vk_i"], recorded["theta_vk_i"]
+    if place.shape == turned.shape == (3, there := place.size // 3) and there > samples:
+        recorded |= {"r_i_vk_i": place[:, :samples], "theta_vk_i": turned[:, :samples]}
+        warn(
+            Unlikely(
+                f"'{file}' has {there} poses and {samples} times: the first {samples} poses are read, and the last "
+                f"{there - samples}, for which there are no images, are cut"
+            )
+        )
     landmarks = variable(LANDMARKS, 3, points).T if LANDMARKS in recorded else None
     fx, fy, cx, cy, baseline = (float(variable(name)) for name in ("fu", "fv", "cu", "cv", "b"))
     if not baseline > 0:

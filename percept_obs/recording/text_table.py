@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 import os
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from csv import reader
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
+from io import StringIO
 from numbers import Integral
 from pathlib import Path
 from typing import Any
@@ -65,16 +69,18 @@ class Clock:
 
     def seconds(self, readings: list[str]) -> Array:
         """Return the seconds of readings in text, shape (K,); the zero is subtracted before rounding."""
-        zero, found = Decimal(repr(self.zero)), []
+        zero, known = Decimal(repr(self.zero)), dict[str, float]()
         for row, text in enumerate(readings, 1):
+            if text in known:  # many points are seen at one time
+                continue
             try:
                 reading = Decimal(text)
             except InvalidOperation:
                 reading = Decimal("nan")
-            if not reading.is_finite() or reading.adjusted() > LARGEST_POWER:
+            if "_" in text or not reading.is_finite() or reading.adjusted() > LARGEST_POWER:
                 raise ValueError(f"row {row} has the time {text!r}; every row needs a finite number there")
-            found.append(float(reading - zero) * self.tick)
-        return np.array(found)
+            known[text] = float(reading - zero) * self.tick
+        return np.array([known[text] for text in readings])
 
     def readings(self, seconds: Array) -> list[str]:
         """Return the readings at some seconds as text with all digits."""
@@ -87,12 +93,12 @@ SECONDS, NANOSECONDS = Clock(), Clock(tick=1e-9)
 
 @dataclass(frozen=True, eq=False)
 class TextTable:
-    """Table of text; an empty cell is ""."""
+    """Table in a file: columns of numbers, NaN for an empty cell, or pandas' Categorical of text, "" for one."""
 
     file: str
-    columns: dict[str, list[str]]
+    columns: Mapping[str, Any]
 
-    def column(self, name: str, meaning: str = "") -> list[str]:
+    def column(self, name: str, meaning: str = "") -> Any:
         """Return the cells of a column; the meaning, such as "time", is for the message if there is none."""
         if name not in self.columns:
             raise ValueError(
@@ -103,57 +109,105 @@ class TextTable:
 
     def numbers(self, name: str, meaning: str = "", gaps: bool = True) -> Array:
         """Return the numbers of a column, shape (K,); NaN for a cell that is empty or nan, if gaps are allowed."""
-        found = []
-        for row, text in enumerate(self.column(name, meaning), 1):
-            try:
-                value = float(text or math.nan)
-            except ValueError:
-                value = math.inf
-            if not (math.isfinite(value) or (gaps and math.isnan(value))):
-                raise ValueError(
-                    f"{self.file} has {text!r} in row {row} of the column {name!r}; write a finite number there, or "
-                    "leave the row out"
-                )
-            found.append(value)
-        return np.array(found)
+        column = self.column(name, meaning)
+        if isinstance(column, np.ndarray):
+            return column
+        values: Array = np.array([_number(text) for text in column.categories], dtype=float)[column.codes]
+        wrong = np.isinf(values) if gaps else ~np.isfinite(values)
+        if wrong.any():
+            raise ValueError(
+                f"{self.file} has {column[wrong.argmax()]!r} in row {wrong.argmax() + 1} of the column {name!r}; "
+                "write a finite number there, or leave the row out"
+            )
+        return values
 
     def seconds(self, name: str, clock: Clock) -> Array:
         """Return the times of a column in seconds, shape (K,)."""
+        column = self.column(name, "time")
         try:
-            return clock.seconds(self.column(name, "time"))
+            return clock.seconds(column.categories.to_numpy(object)[column.codes].tolist())
         except ValueError as error:
             raise ValueError(f"{self.file}, column {name!r}: {error}") from None
 
 
-def read_table(path: PathLike, names: tuple[str, ...] = (), separator: str = ",", example: str = "") -> TextTable:
-    """Read a table of text; what follows a # in a line is a comment.
+def read_table(
+    path: PathLike,
+    names: tuple[str, ...] = (),
+    separator: str = ",",
+    example: str = "",
+    numbers: Sequence[str] = (),
+) -> TextTable:
+    """Read a table of text; a line that begins with # is a comment.
 
     Names are those of the columns of a file without a header, which may have further ones; the separator is a regular
-    expression, and the example a first line for messages.
+    expression, and the example a first line for messages.  The columns that are to be numbers are read fast.
     """
     import pandas as pd
 
     file = os.fspath(path)
     if not Path(path).is_file():
         raise FileNotFoundError(f"the path names '{file}', where there is no file; name a text file with a table")
-    layout: dict[str, Any] = {"sep": separator, "comment": "#", "skipinitialspace": True, "encoding": "utf-8-sig"}
+    layout: dict[str, Any] = {"sep": separator, "skipinitialspace": True, "keep_default_na": False, "header": None}
+    header: list[str] = []
     try:
-        rows = pd.read_csv(path, header=None if names else 0, dtype=str, keep_default_na=False, **layout)
+        with open(file, encoding="utf-8-sig") as lines:
+            skipped, first = next(((k, line) for k, line in enumerate(lines) if not _is_comment(line)), (0, ""))
+        if not names:
+            (cells,) = reader([first], skipinitialspace=True)
+            header = [cell.strip() or f"Unnamed: {k}" for k, cell in enumerate(cells)]
+            layout["names"] = header
+        if repeated := {name for name in header if header.count(name) > 1}:
+            raise ValueError(f"two columns of one name, {', '.join(sorted(repeated))}, among {', '.join(header)}")
+        if numbers and (clean := _clean(file, skipped + 1, set(header) & set(numbers), layout)):
+            return TextTable(file, clean)
+        with open(file, encoding="utf-8-sig") as lines:
+            text = "".join(line for k, line in enumerate(lines) if k > skipped - bool(names) and not _is_comment(line))
+        if header and not text:
+            raise ValueError("a header and no rows")
+        rows: Any = pd.read_csv(StringIO(text), dtype=str, **layout)
+        if not isinstance(rows.index, pd.RangeIndex):
+            raise ValueError("rows with more cells than its header has names")
+        if len(rows.columns) < len(names):
+            raise ValueError(f"{len(rows.columns)} columns, and {len(names)} are needed: {', '.join(names)}")
     except (pd.errors.EmptyDataError, pd.errors.ParserError, UnicodeDecodeError) as error:
         raise ValueError(
             f"{file} is no table of text ({str(error).strip()}); expected rows such as {example}"
         ) from None
-    found = [str(name).strip() for name in rows.columns]
-    problem = ""
-    if not isinstance(rows.index, pd.RangeIndex):
-        problem = "rows with more cells than its header has names"
-    elif len(found) < len(names):
-        problem = f"{len(found)} columns, and {len(names)} are needed: {', '.join(names)}"
-    elif len(set(found)) != len(found):
-        problem = f"two columns of one name, among {', '.join(found)}"
-    elif not len(rows):
-        problem = "a header and no rows"
-    if problem:
-        raise ValueError(f"{file} has {problem}; expected rows such as {example}")
-    columns = zip(names or found, (rows[name] for name in rows.columns), strict=False)
-    return TextTable(file, {name: column.fillna("").str.strip().tolist() for name, column in columns})
+    except ValueError as error:
+        raise ValueError(f"{file} has {error}; expected rows such as {example}") from None
+    columns = zip(names or header, (rows[name] for name in rows.columns), strict=False)
+    return TextTable(file, {name: pd.Categorical(column.fillna("").str.strip()) for name, column in columns})
+
+
+def _clean(file: str, skipped: int, numbers: set[str], layout: dict[str, Any]) -> dict[str, Any] | None:
+    """Columns of a table after some lines, if all its cells are as they should be."""
+    import pandas as pd
+
+    gaps = {name: ["", "nan", "NaN"] for name in numbers}
+    kinds: Any = defaultdict(lambda: str, dict.fromkeys(numbers, float))
+    try:
+        rows = pd.read_csv(file, skiprows=skipped, dtype=kinds, na_values=gaps, encoding="utf-8", **layout)
+    except ValueError:
+        return None
+    if not len(rows) or not isinstance(rows.index, pd.RangeIndex):
+        return None
+    columns: dict[str, Any] = {}
+    for name in rows.columns:
+        columns[name] = cells = rows.pop(name).to_numpy() if name in numbers else pd.Categorical(rows.pop(name))
+        if name in numbers and np.isinf(cells).any():
+            return None
+        if name not in numbers and ((cells.codes < 0).any() or any(text != text.strip() for text in cells.categories)):
+            return None
+    return columns
+
+
+def _is_comment(line: str) -> bool:
+    return line.lstrip()[:1] in ("#", "")
+
+
+def _number(text: str) -> float:
+    """Number in a cell, NaN for none; infinity for what is no number."""
+    try:
+        return math.inf if "_" in text else float(text or math.nan)
+    except ValueError:
+        return math.inf

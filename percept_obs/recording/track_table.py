@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,9 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.signal import slack_of
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface
 from percept_obs.validation import warn
+
+AT_ONCE = 100_000
+"""Rows that are projected at once, so that long tables take no more memory than they must."""
 
 
 def fields_of_recordings(
@@ -49,7 +53,11 @@ def fields_of_recordings(
         raise ValueError("gap and shortest split the tracks of points; name the column of these, such as point='id'")
 
     every = tuple(symbol.name for symbol in surface.image_coordinates)
-    table = read_table(path, example=",".join([time, *([point] if point else []), *(pixels if camera else every)]))
+    inverse = surface.inverse_distance.name
+    example = ",".join([time, *([point] if point else []), *(pixels if camera else every)])
+    wanted = {*(pixels if camera else every), *([] if depth else [inverse]), *distances, *([depth] if depth else [])}
+    table = read_table(path, example=example, numbers=sorted(wanted - {time, point}))
+    _refuse_misspelt(table, [*(() if camera else every), *(() if depth else [inverse])])
     times = table.seconds(time, clock)
     if camera:
         names, outputs = every, _outputs_of_pixels(table, surface, camera, pixels)
@@ -62,28 +70,33 @@ def fields_of_recordings(
             )
         outputs = np.stack([table.numbers(name) for name in names], axis=-1)
 
-    truth = None
-    inverse = surface.inverse_distance.name
+    last = None
     if depth is not None or inverse in table.columns:
-        truth = np.full((len(times), len(surface.coordinates)), np.nan)
-        truth[:, [every.index(name) for name in names]] = outputs
-        truth[:, -1] = table.numbers(inverse) if depth is None else 1 / _distances(table, depth, "depth")
+        last = table.numbers(inverse) if depth is None else 1 / _distances(table, depth, "depth")
     others = {name: _distances(table, name, "distances") for name in distances}
     variance = None if camera is None or pixel_sigma is None else camera.variance(pixel_sigma)
 
     file = os.fspath(path) if point is None else Path(path).name
     known = _known(motion, times, file)
+    if not (np.isfinite(outputs).all(axis=1) & known).any():
+        raise ValueError(f"{file} has no sample: in no row are all of {', '.join(names)} there; fill the cells")
     tracks = [(np.flatnonzero(known), file)]
     if point is not None:
         tracks = _tracks(file, table.column(point, "point"), times, known, outputs, point, gap, shortest)
+    del table  # a long one takes as much memory as all recordings
+    places = [every.index(name) for name in names]
     for rows, source in tracks:
+        truth = None
+        if last is not None:
+            truth = np.full((len(rows), len(surface.coordinates)), np.nan)
+            truth[:, places], truth[:, -1] = outputs[rows], last[rows]
         yield {
             "time": times[rows],
             "outputs": outputs[rows],
             "names": names,
             "view": surface,
             "motion": motion,
-            "truth": None if truth is None else truth[rows],
+            "truth": truth,
             "noise_variance": variance,
             "distances": {name: values[rows] for name, values in others.items()},
             "source": source,
@@ -96,15 +109,28 @@ def runs(time: Array, samples: Indices, gap: float) -> list[Indices]:
     return [run for run in np.split(samples, ends) if len(run)]
 
 
+def _refuse_misspelt(table: TextTable, names: Sequence[str]) -> None:
+    """Ask back about a column that is named nearly as one of these, which would be left out otherwise."""
+    plain = {re.sub(r"[\W_]", "", column).lower(): column for column in table.columns}
+    for name in names:
+        if name not in table.columns and (column := plain.get(name)):
+            raise ValueError(
+                f"{table.file} has the column {column!r}; did you mean {name!r}?  Rename it, or leave it out"
+            )
+
+
 def _outputs_of_pixels(table: TextTable, surface: ImagingSurface, camera: PixelCamera, pixels: Sequence[str]) -> Array:
     """Image coordinates on the surface, shape (K, m), of the columns of pixels; NaN where a pixel is."""
-    try:
-        image = camera.image(np.stack([table.numbers(name, "pixels") for name in pixels], axis=-1))
-    except ValueError as error:
-        raise ValueError(f"{table.file}: {error}") from None
-    seen = np.isfinite(image).all(axis=1)
-    outputs = np.full((len(image), len(surface.image_coordinates)), np.nan)
-    outputs[seen] = surface.project(np.column_stack([image[seen], np.ones(seen.sum())]))[:, :-1]
+    columns = [table.numbers(name, "pixels") for name in pixels]
+    outputs = np.full((len(columns[0]), len(surface.image_coordinates)), np.nan)
+    for begin in range(0, len(outputs), AT_ONCE):
+        part = slice(begin, begin + AT_ONCE)
+        try:
+            image = camera.image(np.stack([column[part] for column in columns], axis=-1))
+        except ValueError as error:
+            raise ValueError(f"{table.file}: {error}") from None
+        seen = np.isfinite(image).all(axis=1)
+        outputs[part][seen] = surface.project(np.column_stack([image[seen], np.ones(seen.sum())]))[:, :-1]
     return outputs
 
 
@@ -141,7 +167,7 @@ def _known(motion: Motion, time: Array, file: str) -> Flags:
 
 def _tracks(
     file: str,
-    points: list[str],
+    points: Any,
     time: Array,
     known: Flags,
     outputs: Array,
@@ -150,11 +176,14 @@ def _tracks(
     shortest: float,
 ) -> list[tuple[Indices, str]]:
     """Rows and source of each track of each point, from its first sample to its last, in the order of the points."""
-    if "" in points:
-        raise ValueError(f"{file}: row {points.index('') + 1} has no {column}; every row needs the name of its point")
-    seen, found, single = np.isfinite(outputs).all(axis=1) & known, [], 0
-    for point in dict.fromkeys(points):
-        rows = np.flatnonzero(np.array(points) == point)
+    empty = np.flatnonzero(points == "")
+    if len(empty):
+        raise ValueError(f"{file}: row {empty[0] + 1} has no {column}; every row needs the name of its point")
+    seen, found, single, unseen = np.isfinite(outputs).all(axis=1) & known, [], 0, 0
+    order = np.argsort(points.codes, kind="stable")
+    of_each = np.split(order, np.flatnonzero(np.diff(points.codes[order])) + 1)
+    for rows in sorted(of_each, key=lambda rows: int(rows[0])):
+        point = points[rows[0]]
         back = np.flatnonzero(np.diff(time[rows]) <= 0)
         if len(back):
             raise ValueError(
@@ -164,6 +193,7 @@ def _tracks(
         parts = runs(time, rows[seen[rows]], gap * (1 + 1e-9))
         lasting = [part for part in parts if len(part) > 1 and np.ptp(time[part]) >= shortest]
         single += sum(len(part) == 1 for part in parts)
+        unseen += not parts
         for number, part in enumerate(lasting, 1):
             name = f"{file}, point {point}{f', part {number}' if len(lasting) > 1 else ''}"
             found.append((rows[known[rows] & (rows >= part[0]) & (rows <= part[-1])], name))
@@ -174,4 +204,6 @@ def _tracks(
         )
     if single and not shortest:
         warn(Unlikely(f"{file}: {single} sightings of a single sample are left out, for nothing follows from one"))
+    if unseen:
+        warn(Unlikely(f"{file}: {unseen} points without any sample are left out"))
     return found
