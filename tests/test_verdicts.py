@@ -42,7 +42,7 @@ from percept_obs.structure import ScaledDepthCamera
 from percept_obs.structure.scenarios import chwa2019_simulation
 from percept_obs.studies.comparison import best_setting, compare, relative_distance_errors
 from percept_obs.studies.least_squares import moving_window_least_squares
-from percept_obs.studies.tuning import choose_and_report, own_length, side_by_side
+from percept_obs.studies.tuning import choose_and_report, side_by_side
 from percept_obs.system.signal import Signal
 from percept_obs.tracking.following import StepTooLong
 from percept_obs.tracking.verdict import SETTLED_PART, TOLERANCE, outcome
@@ -325,24 +325,6 @@ def test_a_run_that_diverged_is_never_the_best():
     recordings = [record(scenarios.ma2005_eq35(), 3)]
     blown, good = smo(BOTH, switching_gain=1e150, bound=1e160), ibo(BOTH)
     assert best_setting(recordings, [blown, good], follow) is good
-
-
-@pytest.mark.parametrize("unit", [2.0**-7, 2.0**5])
-def test_the_table_of_gains_is_the_same_in_any_unit_of_length(unit):
-    scenario = scenarios.ma2005_eq35()
-    values = scenario.motion.values
-    A, b = (np.array(block.subs(values), dtype=float) for block in (scenario.motion.A, scenario.motion.b))
-    tables, lengths = [], []
-    for scale in (1.0, unit):
-        moved = Scenario("scaled", affine(A, scale * b.ravel()), scale * np.array(scenario.position), 3, pinhole())
-        made = [record(moved, camera=replace(NOISY, period=EXACT), seed=seed) for seed in range(2)]
-        candidates = {
-            make: make.candidates[:2] for make in OBSERVERS if make.key in ("de_luca", "spica", "extended_kalman")
-        }
-        tables.append(choose_and_report(made[:1], made[1:], BOTH, follow, candidates, after=(1.0,)))
-        lengths.append(own_length(BOTH, made) / scale)
-    assert lengths[0] == pytest.approx(lengths[1])
-    np.testing.assert_allclose(*(table["median"] for table in tables), rtol=1e-9)
 
 
 def test_what_makes_no_sense_is_refused():

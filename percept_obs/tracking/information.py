@@ -138,7 +138,7 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
             def residuals(x: Array, noise: Array = noise) -> Array:
                 return np.asarray(((backwards(x) - samples) / noise)[seen])
 
-            solution = least_squares(residuals, start, x_scale="jac", diff_step=1e-5, max_nfev=50)
+            solution = least_squares(residuals, start, x_scale="jac", diff_step=SMALL, max_nfev=50)
             start, rest = solution.x, np.where(seen, samples - backwards(solution.x), 0.0)
             spread = np.sqrt((rest**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
             if _inflation(rest / np.maximum(spread, finest)) > 1:  # residuals drift: trust no output more than others

@@ -53,21 +53,23 @@ def refused_for(motion: Motion, registry: Registry, whose: str) -> dict[str, str
 
 
 def with_affine_motion(name: str, recording: Recording, registry: Registry, surface: str) -> Recording:
-    """A recording with the motion's A and b in samples, so that the lab's observers fit it."""
+    """A recording with the motion's A and b in samples, so that the lab's observers fit it; lengths by its unit."""
     motion, times = recording.motion, recording.time
     constant = motion.signal is not None and motion.signal.constant
     if motion.signal is not None and motion.signal.times is not None:
         inside = (motion.signal.times > times[0]) & (motion.signal.times < times[-1])
         times = np.unique(np.concatenate([times, motion.signal.times[inside]]))
-    return replace(recording, view=registry.surfaces[surface], motion=sampled(motion, times[:1] if constant else times))
+    known = sampled(motion, times[:1] if constant else times, recording.unit)
+    truth = None if recording.truth is None else recording.truth * recording.scale
+    return replace(recording, view=registry.surfaces[surface], motion=known, truth=truth, unit=1.0)
 
 
-def sampled(motion: Motion, times: np.ndarray) -> Motion:
-    """A motion's A and b in numbers at some times; one time stands for a constant motion."""
+def sampled(motion: Motion, times: np.ndarray, unit: float = 1.0) -> Motion:
+    """A motion's A and b in numbers at some times, by a unit of length; one time stands for a constant motion."""
     columns = motion.known(times).T if motion.parameters else [np.zeros(1)]
     entries = vectorised(motion.parameters or (TIME,), [*motion.A, *motion.b])(*columns)
     rows = np.broadcast_to(np.stack(entries, axis=-1), (len(times), 12))
-    A, b = rows[:, :9].reshape(-1, 3, 3), rows[:, 9:]
+    A, b = rows[:, :9].reshape(-1, 3, 3), rows[:, 9:] / unit
     return affine(A[0], b[0]) if len(times) == 1 else affine(A, b, times)
 
 
