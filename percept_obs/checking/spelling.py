@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from lark import Lark, Token
+from lark.lexer import LexerThread
 
 from percept_obs.checking.points import key
 
@@ -77,7 +78,7 @@ def _grammar() -> str:
 @lru_cache(maxsize=256)
 def lexed(text: str) -> tuple[Token, ...]:
     """Tokens of a text in plain letters, as the grammar has them."""
-    return tuple(parser().lex(text))
+    return tuple(LexerThread.from_text(parser().parser.lexer, text).lex(None))  # parser().lex() would make a lexer
 
 
 def laid_out(text: str) -> str:
