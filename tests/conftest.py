@@ -13,13 +13,15 @@ from pathlib import Path
 import hypothesis
 import platformdirs
 import pytest
+from sample_sizes import sampled
 
 os.environ["MPLBACKEND"] = "Agg"
 # Kernels and servers with a home of their own take loops in machine code from here too.
 os.environ.setdefault("NUMBA_CACHE_DIR", str(platformdirs.user_cache_path("percept_obs")))
 
-hypothesis.settings.register_profile("here", deadline=None)
-hypothesis.settings.register_profile("ci", deadline=None, derandomize=True, database=None)
+EXAMPLES = sampled(25, 100)
+hypothesis.settings.register_profile("here", deadline=None, max_examples=EXAMPLES)
+hypothesis.settings.register_profile("ci", deadline=None, max_examples=EXAMPLES, derandomize=True, database=None)
 hypothesis.settings.load_profile("ci" if os.environ.get("CI") == "true" else "here")
 
 BROWSERS = (

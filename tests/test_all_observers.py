@@ -114,7 +114,7 @@ def assert_it_stays_at_the_truth(recording, observer):
 
 @each([make.key for make in COPIES])
 @given(scenario=motions())
-@drawn(5)
+@drawn(2)
 def test_started_at_the_truth_it_stays_there(name, form, scenario):
     assert_it_stays_at_the_truth(record(scenario), made(name, form))
 
@@ -133,7 +133,7 @@ def test_started_at_the_truth_it_stays_there_on_every_surface(make, form):
 
 
 @given(scenario=motions())
-@drawn(10)
+@drawn(3)
 def test_dixons_observer_started_at_the_truth_stays_near(scenario):
     """It has no copy of the hidden rate, but learns w x2: its innovation must not leave the boundary layer."""
     recording = record(scenario)
@@ -279,7 +279,7 @@ def exchanged(scenario, order, surface):
 
 @pytest.mark.parametrize("name", ONE_OUTPUT)
 @given(scenario=motions())
-@drawn(3)
+@drawn(1)
 def test_y2_alone_is_y1_alone_with_the_axes_exchanged(name, scenario):
     make = ONE_OUTPUT[name]
     here = track(record(scenario), make(ONE), ZERO, "exact", language="python")

@@ -30,7 +30,7 @@ def test_there_are_two_hundred_of_each():
 
 
 def test_what_is_nearly_the_same_is_not_called_right():
-    found = [(family, str(one), str(other)) for family, one, other in some(ATTACKS, 60) if check(one, other).right]
+    found = [(family, str(one), str(other)) for family, one, other in some(ATTACKS, 25) if check(one, other).right]
     assert found == []
 
 
@@ -52,8 +52,8 @@ def test_of_what_holds_for_some_values_it_is_said_for_which(one, other, where):
     ("one", "other"),
     [
         (sp.Piecewise((x, x > y), (y, True)), sp.Max(x, y)),
-        (x * sp.Heaviside(x), (x + sp.Abs(x)) / 2),
-        (sp.sign(x) * sp.sign(y), sp.sign(x * y)),
+        pytest.param(x * sp.Heaviside(x), (x + sp.Abs(x)) / 2, marks=pytest.mark.slow),
+        pytest.param(sp.sign(x) * sp.sign(y), sp.sign(x * y), marks=pytest.mark.slow),
         (sp.sqrt(sp.expand((x - 2) ** 2 * (1 + y**2))), sp.Abs(x - 2) * sp.sqrt(1 + y**2)),
         (sp.sin(3 * x + y), sp.expand_trig(sp.sin(3 * x + y))),
         (sp.cos(x + sp.pi / 6), sp.sqrt(3) / 2 * sp.cos(x) - sp.sin(x) / 2),
@@ -131,7 +131,7 @@ def test_nothing_is_raised_after_the_work_is_done():
     """Where work ends as the time does, the exception comes in time or not at all."""
     began = time.thread_time()
     outcomes = set()
-    while time.thread_time() - began < 1:
+    while time.thread_time() - began < 0.3:
         until = time.thread_time() + 0.003
         try:
             limited(lambda until=until: all(time.thread_time() < until for _ in range(10**6)), 0.003)

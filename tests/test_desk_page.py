@@ -82,60 +82,65 @@ def test_what_is_the_same_by_a_relation_of_functions_is_right_and_no_attack_on_t
     } == {}
 
 
-def test_a_formula_stands_as_it_was_typed(node):
-    texts = ["b1y3 + a11 y1^2/(2 y2)", "x < y1"]
-    shown, signs = (line["markup"] for line in by_the_page(node, [(RATE, 21, text) for text in texts]))
-    tree = as_tree(shown)
+def test_a_formula_stands_as_it_was_typed_complete_or_not_and_nothing_becomes_a_part_of_the_page(node):
+    begun = ["a11 (", "a11 +", "y1^", "/", ")", "((y1)", "sqrt(y1", "\\frac{y1}{", "y1' =", "= y1", "|", "^^", "x < y1"]
+    texts = [*begun, *(text for text in HOSTILE if text.strip() and len(text) <= LONGEST_LINE)]
+    known = {"math", "mrow", "mi", "mn", "mo", "msub", "msup", "msubsup", "mover", "mfrac", "msqrt"}
+    whole, *lines = by_the_page(node, [(RATE, 21, text) for text in ["b1y3 + a11 y1^2/(2 y2)", *texts]])
+    for text, line in zip(texts, lines, strict=True):
+        assert line["refused"] or line["mark"] == "unknown", text
+        assert {part.tag for part in as_tree(line["markup"]).iter()} <= known
+    tree, signs = as_tree(whole["markup"]), lines[len(begun) - 1]["markup"]
     assert "".join(tree.itertext()) == "b1\u2062y3+a11\u2062y122\u2062y2"  # the fraction needs no brackets
     assert [len(list(tree.iter(tag))) for tag in ("mfrac", "msubsup", "msub")] == [1, 1, 4]
     assert signs == "<mrow><mi>x</mi><mo>&#60;</mo><msub><mi>y</mi><mi>1</mi></msub></mrow>"
 
 
-def test_what_is_not_complete_is_shown_and_nothing_typed_becomes_a_part_of_the_page(node):
-    begun = ["a11 (", "a11 +", "y1^", "/", ")", "((y1)", "sqrt(y1", "\\frac{y1}{", "y1' =", "= y1", "|", "^^"]
-    texts = [*begun, *(text for text in HOSTILE if text.strip() and len(text) <= LONGEST_LINE)]
-    known = {"math", "mrow", "mi", "mn", "mo", "msub", "msup", "msubsup", "mover", "mfrac", "msqrt"}
-    for text, line in zip(texts, by_the_page(node, [(RATE, 21, text) for text in texts]), strict=True):
-        assert line["refused"] or line["mark"] == "unknown", text
-        assert {part.tag for part in as_tree(line["markup"]).iter()} <= known
+POINT = [0.2, -0.1, 0.7]
+WRONG = {"rate 6 y1'": MISTAKES["wrong sign"][0]}
+ALONG = "a31 y1 + a32 y2 + a33 - b3 y3"
+DESKS = {
+    "wrong": {"step": 6, "point": POINT, "typed": WRONG},
+    "form": {"part": "form"},
+    "in an earlier step": {"step": 5, "typed": {"rate 5 the velocity along Z": ALONG}},
+    "its rates": {"step": 6, "typed": WRONG | {"rate 6 y2'": f"a21 y1 + a22 y2 + a23 - y2 ({ALONG}) + b2 y3"}},
+    "empty": {"step": 5},
+    "nowhere": {"step": 6, "point": [0.0, 0.1, 0.7], "typed": {"rate 6 y1'": "1/y1", "rate 6 y2'": "sqrt(-1 - y1^2)"}},
+    "example": EXAMPLE,
+    "mended": EXAMPLE | {"typed": {name: text.replace("+ b3", "- b3") for name, text in EXAMPLE["typed"].items()}},
+}
 
 
-def test_the_witness_has_the_numbers_of_the_formulas(node):
-    point = [0.2, -0.1, 0.7]
-    wrong = derivation_desk(step=6, point=point, typed={"rate 6 y1'": MISTAKES["wrong sign"][0]})
+@pytest.fixture(scope="module")
+def answers(node):
+    """What the page answers to desks, by their names; three outputs are no picture."""
     own = derivation_desk(PerspectiveSystem(rigid(), plane((0.1, 0.2, 1.0), outputs=3)), step=6)
-    found = answers_of_the_page(node, wrong, derivation_desk(part="form"), own)
+    desks = [own, *(derivation_desk(**settings) for settings in DESKS.values())]
+    return dict(zip(["three outputs", *DESKS], answers_of_the_page(node, *desks), strict=True))
+
+
+def test_the_witness_has_the_numbers_of_the_formulas(answers):
     system = system_of("affine", "pinhole")
-    numbers = {s: number_of(s, system) for s in system.parameters} | dict(zip(system.coordinates, point, strict=True))
+    numbers = {s: number_of(s, system) for s in system.parameters} | dict(zip(system.coordinates, POINT, strict=True))
     true = [float(rate.subs(numbers)) for rate in system.rate[:2]]
     b3, y1, y3 = (numbers[sp.Symbol(name, real=True)] for name in ("b3", "y1", "y3"))
-    picture = found[0]["picture"]
+    picture = answers["wrong"]["picture"]
     np.testing.assert_allclose(picture["true"], true)
     np.testing.assert_allclose(picture["mine"][0], true[0] + 2 * b3 * y1 * y3)
     assert picture["mine"][1] is None
     apart = np.subtract(picture["field"]["mine"][0], picture["field"]["true"][0])
     np.testing.assert_allclose(apart, 2 * b3 * np.array(picture["field"]["places"])[:, 0] * y3, atol=1e-7)
-    assert [answer["picture"] for answer in found[1:]] == [None, None]  # three outputs are no picture
+    assert answers["form"]["picture"] is answers["three outputs"]["picture"] is None
 
 
-def test_a_slip_in_an_earlier_step_bends_the_arrow_that_follows_from_it(node):
-    along = "a31 y1 + a32 y2 + a33 - b3 y3"
-    lines = {"rate 6 y1'": MISTAKES["wrong sign"][0], "rate 6 y2'": f"a21 y1 + a22 y2 + a23 - y2 ({along}) + b2 y3"}
-    desks = [
-        derivation_desk(step=5, typed={"rate 5 the velocity along Z": along}),
-        derivation_desk(step=6, typed=lines),
-        derivation_desk(step=5),
-        derivation_desk(step=6, point=[0.0, 0.1, 0.7], typed={"rate 6 y1'": "1/y1", "rate 6 y2'": "sqrt(-1 - y1^2)"}),
-    ]
-    carried, direct, *none = (answer["picture"]["mine"] for answer in answers_of_the_page(node, *desks))
-    np.testing.assert_allclose(carried, direct)
-    assert none == [[None, None]] * 2  # nothing is typed, or it has no value
+def test_a_slip_in_an_earlier_step_bends_the_arrow_that_follows_from_it(answers):
+    mine = {name: answer["picture"]["mine"] for name, answer in answers.items() if answer["picture"]}
+    np.testing.assert_allclose(mine["in an earlier step"], mine["its rates"])
+    assert mine["empty"] == mine["nowhere"] == [None, None]  # nothing is typed, or it has no value
 
 
-def test_each_term_of_the_example_is_judged_and_the_whole_misses_by_its_slip(node):
-    mended = {name: line.replace("+ b3", "- b3") for name, line in EXAMPLE["typed"].items()}
-    answers = answers_of_the_page(node, derivation_desk(), derivation_desk(step=6, typed=mended))
-    parts, right = (next(iter(answer["grown"].values())) for answer in answers)
+def test_each_term_of_the_example_is_judged_and_the_whole_misses_by_its_slip(answers):
+    parts, right = (next(iter(answers[name]["grown"].values())) for name in ("example", "mended"))
     (text,) = EXAMPLE["typed"].values()
     assert [text[: part["end"]] for part in parts][:2] == ["a13", "a13 + (a11 - a33) y1"]
     assert parts[-1]["end"] == len(text)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure as MatplotlibFigure
+from sample_sizes import slow_but
 
 from percept_obs import (
     Camera,
@@ -91,7 +92,9 @@ MAKERS = {
     ),
     "three outputs": lambda: eq35("y1", "y2", "y3", surface=plane((0.1, 0.2, 1), outputs=3)),
 }
-FLAT = [name for name in MAKERS if name != "three outputs"]
+FEW = ("(36), y1 alone", "dropouts", "diverged, without truth")
+each_run = pytest.mark.parametrize("name", slow_but(*FEW, among=MAKERS))
+each_flat_run = pytest.mark.parametrize("name", slow_but(*FEW, among=[n for n in MAKERS if n != "three outputs"]))
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -300,7 +303,7 @@ def test_consistency_is_drawn_with_its_interval_and_verdict(runs):
 # ---- image plane
 
 
-@pytest.mark.parametrize("name", FLAT)
+@each_flat_run
 def test_the_image_has_the_path_its_ends_and_the_estimate(runs, name):
     run = runs(name)
     figure = figures.image_plane(run)
@@ -414,7 +417,7 @@ def places(ax, label):
     return np.array(found.get_data_3d())
 
 
-@pytest.mark.parametrize("name", MAKERS)
+@each_run
 def test_the_scene_has_the_true_places_and_the_credible_estimates(runs, name):
     run = runs(name)
     figure = figures.scene(run, far=2)
@@ -504,7 +507,7 @@ def test_compare_takes_runs_with_and_without_noise(runs):
 # ---- distance
 
 
-@pytest.mark.parametrize("name", MAKERS)
+@each_run
 def test_distance_is_in_metres_with_gaps_behind_the_camera(runs, name):
     run = runs(name)
     figure = figures.distance(run, labels=["estimate"])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from refusals import refuses
+from sample_sizes import slow_but
 from test_points_form import generic
 
 from percept_obs import PointsForm, linear, luenberger, record, track
@@ -36,7 +37,7 @@ def weights():
     }
 
 
-@pytest.mark.parametrize("name", weights())
+@pytest.mark.parametrize("name", slow_but("scheduled, growing", "Lyapunov", "Riccati", among=weights()))
 def test_the_inequalities_are_told_apart(name):
     weight, printed, weaker = weights()[name]
     recording = record(moving_body(), 6)

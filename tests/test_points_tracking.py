@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from refusals import refuses
+from sample_sizes import slow_but
 from scipy.integrate import solve_ivp
 
 from percept_obs import (
@@ -42,7 +43,7 @@ def turning(points=2, duration=4.0, **settings):
     return record(PointsScenario("turning", form, np.ravel(places), duration), **settings)
 
 
-@pytest.mark.parametrize("points", [1, 2])
+@pytest.mark.parametrize("points", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_the_error_obeys_its_equation_to_the_fourth_order(points):
     """rho' = (A - P^-1 C^T B^T B C) rho, solved beside by another method; half the step, a sixteenth of the miss."""
     scenario, rho = moving_body(points), ERROR[: 3 * points]
@@ -73,7 +74,7 @@ WEIGHTS = {
 }
 
 
-@pytest.mark.parametrize("name", WEIGHTS)
+@pytest.mark.parametrize("name", slow_but("scheduled", "Riccati", among=WEIGHTS))
 def test_a_start_at_the_truth_stays_there(name):
     whole = body(2)
     run = track(whole, luenberger(whole.view, WEIGHTS[name]), whole.truth[0], hold="exact")

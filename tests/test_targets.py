@@ -110,6 +110,7 @@ def test_the_error_of_many_points_is_checked_line_by_line():
     assert check({f"{observer.estimate[0]}'": observer.flow[0]}, observer).right
 
 
+@pytest.mark.slow
 def test_integrals_of_matrices_are_compared_as_they_stand():
     m, entry = ma2005_observability, MA2005[14]
     w, least = m.w, m.beta * sp.Identity(m.n2)
@@ -134,6 +135,7 @@ def test_a_statement_that_is_not_true_says_so_where_it_is_typed_as_printed():
     assert "it is false as stated" in review.summary
 
 
+@pytest.mark.slow
 def test_every_entry_with_a_formula_is_a_target_and_every_other_one_says_why():
     for ledger in LEDGERS:
         for entry in ledger.entries:
