@@ -143,6 +143,7 @@ def test_javascript_agrees(monkeypatch, node, name, outputs):
 @pytest.mark.node
 def test_resets_updates_and_functions_agree_in_javascript(node):
     flow = (sp.sin(x) * sp.exp(-(x**2)) + sp.tanh(u) + sp.sqrt(1 + x**2) - sp.sign(x) * sp.Abs(x) / 3 + sp.pi / x**3,)
+    flow = (flow[0] + sp.asin(sp.tanh(x)) * sp.acos(sp.tanh(u)) / 9 + sp.atan(x) / 9,)
     condition = sp.And(x > 2, sp.Or(x < 9, k > 0))
     equations = Equations((x,), flow, (u,), (k,), (c,), ((x + c * (u - x),),), condition, (x / 2,))
     samples = np.full((41, 1), np.nan)

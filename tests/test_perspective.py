@@ -7,10 +7,32 @@ import pytest
 import sympy as sp
 from examples import AFFINE, MOTIONS, SURFACES
 
-from percept_obs import PerspectiveSystem, affine, chained, pinhole, plane
+from percept_obs import ImagingSurface, PerspectiveSystem, affine, chained, pinhole, plane
 from percept_obs.checking.deciding import same
-from percept_obs.compile import vectorised
+from percept_obs.compile import function_source, vectorised
 from percept_obs.system.surfaces.base import X, Y, Z
+
+y1, y2 = sp.symbols("y1 y2", real=True)
+AXIS, RANGE, TURN = sp.sqrt(X**2 + Z**2), sp.sqrt(X**2 + Y**2 + Z**2), sp.sqrt(y1**2 + y2**2)
+ON_SPHERE = (sp.sin(y1) * sp.cos(y2), sp.sin(y2), sp.cos(y1) * sp.cos(y2))
+POLAR = sp.atan2(sp.sqrt(X**2 + Y**2), Z) / sp.sqrt(X**2 + Y**2)
+FISHEYE = (sp.sin(TURN) * y1 / TURN, sp.sin(TURN) * y2 / TURN, sp.cos(TURN))
+ANGULAR = [
+    ImagingSurface("cylinder", (sp.atan2(X, Z), Y / AXIS), AXIS, (sp.sin(y1), y2, sp.cos(y1))),
+    ImagingSurface("azimuth and elevation", (sp.atan2(X, Z), sp.atan(Y / AXIS)), RANGE, ON_SPHERE),
+    ImagingSurface("by sines", (sp.atan(X / Z), sp.asin(Y / RANGE)), RANGE, ON_SPHERE),
+    ImagingSurface("equidistant", (POLAR * X, POLAR * Y), RANGE, FISHEYE),
+]
+"""Surfaces whose image is an angle."""
+
+
+@pytest.mark.parametrize("surface", ANGULAR, ids=lambda surface: surface.name)
+def test_angles_are_plain_on_the_ray_and_are_printed_in_both_languages(surface):
+    test_rate_against_a_finite_difference(affine(), surface)
+    system = PerspectiveSystem(affine(), surface)
+    assert not system.rate.atoms(sp.Abs, sp.atan, sp.atan2, sp.asin)
+    assert "Math.atan" in function_source((X, Y, Z), surface.image)
+    assert "Math.sin" in function_source((*system.coordinates, *system.parameters), tuple(system.rate))
 
 
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)

@@ -20,7 +20,10 @@ Notation = Literal["python", "javascript", "batch"]
 LARGEST_PRODUCT = 8
 """Powers of numbers or of roots up to this are printed as products, the same in every language."""
 
-FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.exp, sp.log, sp.tanh, sp.cosh, sp.sinh, sp.atan2)
+FUNCTIONS = (
+    *(sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan, sp.atan2),
+    *(sp.exp, sp.log, sp.tanh, sp.cosh, sp.sinh),
+)
 """Functions that have the same name in sympy, Python and JavaScript."""
 
 BUILT = (sp.Add, sp.Mul, sp.Symbol, sp.Abs, sp.sign, sp.NumberSymbol, sp.Piecewise, ExprCondPair, Boolean, Intermediate)

@@ -96,7 +96,7 @@ class PointsScenario(Scene):
                 A, v = form.coefficients(float(time))
                 return A[0] @ state + v[0]
 
-            path = varying_path(rate, start, times, () if signal.times is None else signal.times)
+            path = varying_path(rate, start, times, signal.breaks(times[-1]))
         bounded = np.isfinite(path).all(axis=1)
         if not bounded.all():
             when = times[np.argmin(bounded)]

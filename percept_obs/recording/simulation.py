@@ -115,8 +115,8 @@ class Scenario(Scene):
         if motion.signal is None or motion.signal.constant:
             A, b = coefficients(motion, motion.known(times[:1]))
             return constant_path(A[0], b[0], start, times)
-        breaks = () if motion.signal.times is None else motion.signal.times
         flow = _flow(point_in_motion(motion.A, motion.b, motion.parameters))
+        breaks = motion.signal.breaks(times[-1])
         return varying_path(lambda t, x: flow(x, (), motion.known(float(t))[0]), start, times, breaks)
 
     @property

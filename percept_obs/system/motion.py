@@ -12,6 +12,7 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, vectorised
+from percept_obs.system.breaks import breaks_of
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.validation import (
     MOST_TERMS,
@@ -288,7 +289,8 @@ def bound(
         entries = [e for value, block in coefficients for e in matrix(value, _title(block), *block.shape)]
         A, b = (each.xreplace(dict(zip(symbols, entries, strict=True))) for each in (A, b))
         free = tuple(sorted(A.free_symbols | b.free_symbols, key=str))
-        return Motion(name, A, b, free, Signal(OverTime(lambda times: times[:, None])) if free == (TIME,) else None)
+        at = OverTime(lambda times: times[:, None], lambda until: breaks_of(TIME, (*A, *b), until))
+        return Motion(name, A, b, free, Signal(at) if free == (TIME,) else None)
     if any(map(callable, values)):
         functions = [_function(value, block) for value, block in coefficients]
         function = OverTime(lambda times: np.hstack([rows(times) for rows in functions]))

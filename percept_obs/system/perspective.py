@@ -248,7 +248,18 @@ def _gradients(surface: ImagingSurface) -> sp.ImmutableMatrix:
     gradients = sp.ImmutableMatrix([*surface.image, surface.distance]).jacobian(POINT)
     ray = dict(zip(POINT, surface.ray, strict=True))
     at_one = gradients.subs(surface.distance, 1).subs(dict(surface.roots))
-    return at_one.subs(ray, simultaneous=True).applyfunc(sp.cancel)
+    return at_one.subs(ray, simultaneous=True).applyfunc(lambda entry: _with_plain_angles(sp.cancel(entry), surface))
+
+
+def _with_plain_angles(entry: sp.Expr, surface: ImagingSurface) -> sp.Expr:
+    """An entry on the ray, with u in place of atan2(|sin(u)|, cos(u)): a root is an angle from 0 to pi."""
+    for y, image in zip(surface.image_coordinates, surface.image, strict=True):
+        if isinstance(image, sp.asin | sp.atan):  # from -pi/2 to pi/2
+            entry = entry.xreplace({sp.Abs(sp.cos(y)): sp.cos(y)})
+    sines = {size: size.args[0] for size in entry.atoms(sp.Abs) if isinstance(size.args[0], sp.sin)}
+    entry = entry.xreplace({size: sine for size, sine in sines.items() if sine.args[0].is_nonnegative})
+    angles = {sp.atan2(sp.sin(u), sp.cos(u)): u for sine in sines.values() for u in sine.args}
+    return sp.cancel(entry.xreplace(angles)) if sines else entry
 
 
 @lru_cache(maxsize=64)

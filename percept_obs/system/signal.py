@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,6 +62,12 @@ class Signal:
         """True if the signal is the same at all times."""
         return not callable(self.samples) and len(self.samples) == 1
 
+    def breaks(self, until: float) -> ArrayLike:
+        """Times up to a last one between which the signal is smooth, as far as they are known."""
+        if self.times is not None:
+            return self.times
+        return self.samples.breaks(until) if isinstance(self.samples, OverTime) else ()
+
     def at(self, times: ArrayLike) -> Array:
         """Return the values at times in seconds, shape (T, n), or (1, n) if constant; refuse times outside."""
         times = np.atleast_1d(np.asarray(times, dtype=float))
@@ -83,6 +89,7 @@ class OverTime:
     """Function of time that returns its rows at many times at once, for a run asks for ten thousands."""
 
     rows: Callable[[Array], Array]
+    breaks: Callable[[float], Sequence[float]] = lambda until: ()  # up to a time, as `breaks_of` gives them
 
     def __call__(self, time: float) -> Array:
         """Values at one time, shape (n,)."""

@@ -292,7 +292,7 @@ def _motion(settings: Settings) -> Motion:
     """The motion of settings: constant, or as it was typed."""
     if settings["motion"].strip():
         typed, numbers = read_motion(settings["motion"], BLOCKS), _numbers(settings)
-        return replace(MOTION, signal=Signal(OverTime(lambda times: typed.rows(times, numbers))))
+        return replace(MOTION, signal=Signal(OverTime(lambda times: typed.rows(times, numbers), typed.breaks)))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # the controls say their units
         return affine(settings["A"], settings["b"])

@@ -91,9 +91,10 @@ def table_of(scenario: Scenario) -> Motion | None:
     motion = scenario.motion
     if motion.signal is None or motion.signal.constant:
         return None
-    times = motion.signal.times
-    if times is None:
-        times = np.arange(0, scenario.duration + LONGEST_STEP / 2, LONGEST_STEP)
+    times = motion.signal.breaks(scenario.duration)
+    if motion.signal.times is None:
+        times = np.union1d(times, np.arange(0, scenario.duration + LONGEST_STEP / 2, LONGEST_STEP))
+    times = np.asarray(times)
     inside = np.unique(np.concatenate([[0.0], times[(times > 0) & (times < LONGEST)]]))
     found = sampled(motion, inside)
     signal = found.signal

@@ -3,12 +3,11 @@
 import re
 from collections.abc import Mapping
 from html import escape
-from typing import Any
 
 import sympy as sp
-from sympy.printing.mathml import MathMLPresentationPrinter
 
 from percept_obs.compile import in_letters
+from percept_obs.validation.expressions import UNFIT
 
 BETTER = (
     ("<mi>phi</mi>", "<mi>φ</mi>"),
@@ -65,16 +64,12 @@ def words(text: str) -> str:
     return f"<mtext>&nbsp;{escape(text)}&nbsp;</mtext>"
 
 
-class _Escaping(MathMLPresentationPrinter):
-    """sympy's printer, which escapes nothing, with names that are no markup."""
-
-    def _print_Symbol(self, sym: Any, style: str = "plain") -> Any:
-        return super()._print_Symbol(sp.Symbol(escape(sym.name)), style)
-
-
 def _mathml(expression: object) -> str:
     if isinstance(expression, sp.Basic) and not isinstance(expression, sp.MatrixExpr):
         expression = in_letters(expression)
+    if isinstance(expression, sp.Basic):  # sympy escapes no name
+        named = expression.atoms(sp.Symbol, sp.MatrixSymbol)
+        expression = expression.xreplace({s: s.func(escape(s.name), *s.args[1:]) for s in named if UNFIT & set(s.name)})
     if isinstance(expression, sp.Piecewise):
         cases = [(_mathml(value), "" if when == sp.true else _mathml(when)) for value, when in expression.args]
         rows = [
@@ -86,5 +81,5 @@ def _mathml(expression: object) -> str:
         taken = [term for term in expression.args if term.as_coeff_mmul()[0].is_negative]
         added = "<mo>+</mo>".join(_mathml(term) for term in expression.args if term not in taken)
         return f"<mrow>{added}{''.join(f'<mo>-</mo>{_mathml(-term)}' for term in taken)}</mrow>"
-    text = re.sub(r"\s*\n\s*", "", str(_Escaping().doprint(expression)))
+    text = re.sub(r"\s*\n\s*", "", str(sp.mathml(expression, printer="presentation")))
     return text.replace("<mi>ybar</mi>", "<mover><mi>y</mi><mo>¯</mo></mover>")

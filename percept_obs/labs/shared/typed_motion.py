@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,15 +15,20 @@ from percept_obs.checking.reading import read
 from percept_obs.compile import Array, function_source, python_text, vectorised
 from percept_obs.labs.shared.printed import Texts
 from percept_obs.labs.shared.schema import Text
+from percept_obs.system.breaks import breaks_of
 from percept_obs.system.motion import TIME
 from percept_obs.validation import expression
 
 MOST = 400
+LONGEST = 200.0
+"""Seconds up to which the page knows where a typed motion jumps."""
 INSTANTS = 501
 """Number of times of a run at which a typed motion is checked."""
 
 Blocks = Mapping[str, sp.ImmutableMatrix]
 """Vectors and matrices of symbols, by their letters."""
+
+_IF = re.compile(r"([^,;=\[\]\n]*?)\bif\b([^,;\[\]\n]*?)\belse\b([^,;\[\]\n]*)")
 
 
 def typed_setting(example: str) -> Text:
@@ -50,9 +56,13 @@ class Typed:
         function = vectorised((TIME, *self.symbols), self.expressions)
         return np.stack(function(times, *numbers.T), axis=-1)
 
+    def breaks(self, until: float) -> tuple[float, ...]:
+        """Times between which it is smooth; see `breaks_of`."""
+        return breaks_of(TIME, self.expressions, until)
+
     def refuse_poles(self, duration: float, numbers: Callable[[Array], Array]) -> None:
         """Raise a ValueError if a value is not finite at some time; `numbers` are those of the lab at given times."""
-        times = np.linspace(0, duration, INSTANTS)
+        times = np.union1d(np.linspace(0, duration, INSTANTS), self.breaks(duration))
         with np.errstate(all="ignore"):
             found = self.rows(times, numbers(times))
         bad = np.argwhere(~(np.abs(found) <= 1e6))
@@ -72,14 +82,16 @@ class Typed:
         columns = [names.index(name) for name in python]
         used = set().union(*(entry.free_symbols for entry in self.changed.values()))
         uses = [place for place, symbol in enumerate(self.symbols) if symbol in used]
-        return {"source": source, "columns": columns, "uses": uses, "zero": zero, "python": python}
+        found = {"source": source, "columns": columns, "uses": uses, "zero": zero, "python": python}
+        return found | {"breaks": self.breaks(LONGEST)}
 
 
 def read_motion(text: str, blocks: Blocks) -> Typed:
     """Read a motion of lines such as "a12 = 0.4 cos(2t); b3 = b3 + 0.1 t", or of a whole block, "b = [sin(t), 0, 1]".
 
-    A line may also name something to be used in the next ones, "q = 2t".  The blocks' entries, symbols of the numbers
-    that a lab sets, may be given; a ValueError says, with the place, what cannot be read, or is given twice.
+    A value may be "1 if t < 2 else 0", or hold step(t - 2), which is 0 and then 1.  A line may also name something
+    to be used in the next ones, "q = 2t".  The blocks' entries, symbols of the numbers that a lab sets, may be given; a
+    ValueError says, with the place, what cannot be read, or is given twice.
 
     >>> b = sp.ImmutableMatrix(sp.symbols("b1:4", real=True))
     >>> read_motion("b1 = b1 + sin(2t)", {"b": b}).expressions
@@ -88,13 +100,32 @@ def read_motion(text: str, blocks: Blocks) -> Typed:
     return _read(text, tuple(blocks.items()))
 
 
+def _branches(text: str) -> str:
+    """A text with Piecewise in place of "1 if t < 2 else 0"."""
+
+    def branches(found: re.Match[str]) -> str:
+        value, when, other = found.groups()
+        if not re.search("[<>≤≥]", when) or any(part.count("(") != part.count(")") for part in found.groups()):
+            raise ValueError('"if" is of a whole entry, such as b1 = 1 if t < 2 else 0')
+        return f" Piecewise(({value}, {when}), ({_branches(other)}, True))"
+
+    return _IF.sub(branches, text)
+
+
+def _step(*values: sp.Expr) -> sp.Expr:
+    """0 before, and 1 from where a number is no longer negative."""
+    if len(values) != 1 or hasattr(values[0], "shape"):
+        raise ValueError("step is of one number, such as step(t - 2)")
+    return sp.Piecewise((1, values[0] >= 0), (0, True))
+
+
 @lru_cache(maxsize=64)
 def _read(text: str, blocks: tuple[tuple[str, sp.ImmutableMatrix], ...]) -> Typed:
     symbols = tuple(dict.fromkeys(symbol for _, block in blocks for symbol in block))
     named = {key(letter): block for letter, block in blocks} | {key(s.name): sp.ImmutableMatrix([s]) for s in symbols}
     letters = {key(symbol.name): symbol for symbol in (TIME, *symbols)}
     found: dict[sp.Symbol, sp.Expr] = {}
-    for reading in read(text, letters, list(named)).lines:
+    for reading in read(_branches(text), letters, list(named), {"step": _step}).lines:
         block = named.get(reading.name)
         if block is None:
             raise ValueError(

@@ -2,6 +2,7 @@
 // Motions that somebody typed: Python read them, and printed each as a function of time and of the numbers that a lab
 // sets.
 
+import { NO_BREAKS } from "./camera.js";
 import { instants } from "./tables.js";
 
 /** The function that a typed motion is, as a module of functions; nothing of settings without one. */
@@ -17,6 +18,11 @@ export function typedModule({ written }, text) {
   const { source, columns, uses } = answer;
   const typed = `${source}\nObject.assign(evaluate, ${JSON.stringify({ columns, uses })});`;
   return [{ key: `motion ${text}`, texts: { typed } }];
+}
+
+/** Times between which a typed motion is smooth. */
+export function breaksOf({ written }, text) {
+  return written?.[text]?.breaks ?? NO_BREAKS;
 }
 
 /** Python's answers to the texts in settings and in the kept ones. */

@@ -1,9 +1,9 @@
 // Camera of one point, which moves, is projected and sampled; or a real track. As record() in Python.
 
-import { errorOf, NO_BREAKS, PointCamera } from "../../common/model/camera.js";
+import { errorOf, PointCamera } from "../../common/model/camera.js";
 import { derived } from "../../common/model/derived.js";
 import { known, withColumns } from "../../common/model/tables.js";
-import { isTyped, typedAlong, typedRows } from "../../common/model/typed.js";
+import { breaksOf, isTyped, typedAlong, typedRows } from "../../common/model/typed.js";
 
 export class Camera extends PointCamera {
   constructor(model, memory) {
@@ -22,8 +22,8 @@ export class Camera extends PointCamera {
     return this.model.scenarios[scenario]?.track;
   }
 
-  kinks({ scenario }) {
-    return this.sampledMotion(scenario)?.times ?? NO_BREAKS;
+  kinks({ scenario, motion }) {
+    return this.sampledMotion(scenario)?.times ?? breaksOf(this.model, motion);
   }
 
   path(settings, functions, lines) {

@@ -1,9 +1,10 @@
 // Points in motion and the camera that sees them: the same numbers as record() in Python.
 
-import { clockOf, errorOf, NO_BREAKS } from "../../common/model/camera.js";
+import { clockOf, errorOf } from "../../common/model/camera.js";
 import { sampledAt } from "../../common/model/derived.js";
 import { draws } from "../../common/model/random.js";
 import { instants } from "../../common/model/tables.js";
+import { breaksOf } from "../../common/model/typed.js";
 import { ENTRIES, flowOf, kindsOf, placed } from "./flow.js";
 import { product, pseudoInverse } from "./symmetric.js";
 
@@ -103,9 +104,9 @@ export class Camera {
     return this.memory.once(`known ${purpose}`, settings, make, grid, functions.coefficients);
   }
 
-  /** Times at which the motion of a state has kinks: those of a user's samples. */
-  kinks({ state }) {
-    return this.model.states[state].samples?.times ?? NO_BREAKS;
+  /** Times at which the motion of a state has kinks: those of a user's samples, or of what is typed. */
+  kinks({ state, motion }) {
+    return this.model.states[state].samples?.times ?? breaksOf(this.model, motion);
   }
 
   /** The state whose points are at the given places; of several the smallest. */

@@ -3,7 +3,7 @@
 import { errorOf, PointCamera } from "../../common/model/camera.js";
 import { sampledAt } from "../../common/model/derived.js";
 import { instants } from "../../common/model/tables.js";
-import { isTyped } from "../../common/model/typed.js";
+import { breaksOf, isTyped } from "../../common/model/typed.js";
 
 /** True if the velocities are the user's samples. */
 export function isSampled({ velocities }) {
@@ -25,7 +25,7 @@ export class StructureCamera extends PointCamera {
   }
 
   kinks(settings) {
-    return isSampled(settings) ? this.model.samples.times : super.kinks(settings);
+    return isSampled(settings) ? this.model.samples.times : breaksOf(this.model, settings.motion);
   }
 
   /** Known and unknown velocities at some times, in rows of w, v_c, v_p; one row if they do not change. */
