@@ -121,7 +121,7 @@ class Bound:
         shares : array of shape (n2,)
             Increasing; 1 where the samples tell nothing.
         directions : array of shape (n2, n2)
-            Of the hidden coordinates at the start, one a column.
+            Of the hidden coordinates at the start, by the recording's unit, one a column.
         """
         hidden = positions(self.form, self.form.hidden)
         root = np.linalg.cholesky(self.prediction[0])
@@ -130,7 +130,7 @@ class Bound:
         before = np.linalg.cholesky(self.prediction[0][np.ix_(hidden, hidden)])
         inverse = np.linalg.inv(before)
         values, vectors = np.linalg.eigh(inverse @ after[np.ix_(hidden, hidden)] @ inverse.T)
-        return np.sqrt(np.clip(values, 0.0, 1.0)), before @ vectors
+        return np.sqrt(np.clip(values, 0.0, 1.0)), (before @ vectors) * self.recording.scale[hidden, None]
 
     def __repr__(self) -> str:
         last = ", ".join(f"{name} {d:.3g}" for name, d in zip(names_of(self.form), self.deviation[-1], strict=True))

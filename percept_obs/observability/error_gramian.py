@@ -102,7 +102,8 @@ def error_gramian(recording: Recording, system: System, window: float) -> ErrorG
     along = linearised(form, recording)
     H = np.eye(len(form.coordinates))[along.measured] * along.seen[:, :, None]
     begins, matrices = window_integrals(recording.time, np.swapaxes(H, 1, 2) @ H, along.transitions, window)
-    return ErrorGramian(names_of(form), recording.time[begins], matrices, window)
+    by_unit = matrices / np.outer(recording.scale, recording.scale)
+    return ErrorGramian(names_of(form), recording.time[begins], by_unit, window)
 
 
 @checked
@@ -155,7 +156,7 @@ def empirical_gramian(
     last = int(np.searchsorted(time, time[-1] - window + slack_of(time), side="right")) - 1
     begins = np.unique(np.linspace(0, last, MOST_WINDOWS).round().astype(int))
     ends = np.searchsorted(time, time[begins] + window - slack_of(time))
-    matrices = _by_runs(form, recording, begins, ends, perturbed)
+    matrices = _by_runs(form, recording, begins, ends, perturbed) / np.outer(recording.scale, recording.scale)
     return ErrorGramian(names_of(form), time[begins], matrices, window)
 
 

@@ -90,18 +90,18 @@ class Codistribution:
                 known = np.gradient(known, time, axis=0)
                 columns += [*known.T, *(0.0 for _ in surface)]
         assert recording.truth is not None
-        return self._ranks(time, *recording.truth.T, *columns)
+        return self._ranks(time, recording.scale, *recording.truth.T, *columns)
 
     def _at(self, values: Mapping[sp.Symbol, float]) -> LieRanks:
         """Ranks at one state and motion."""
         missing = [str(symbol) for symbol in self._symbols if symbol not in values]
         if missing:
             raise ValueError(f"there are no values for {', '.join(missing)}; give them numbers")
-        return self._ranks(np.zeros(1), *([float(values[symbol])] for symbol in self._symbols))
+        return self._ranks(np.zeros(1), np.ones(1), *([float(values[symbol])] for symbol in self._symbols))
 
-    def _ranks(self, time: Array, *columns: ArrayLike) -> LieRanks:
+    def _ranks(self, time: Array, scale: Array, *columns: ArrayLike) -> LieRanks:
         entries = vectorised(self._symbols, list(self.matrix))(*columns)
-        rows = np.stack(entries, axis=-1).reshape(-1, *self.matrix.shape)
+        rows = np.stack(entries, axis=-1).reshape(-1, *self.matrix.shape) / scale
         # rows of length 1, so that no order outweighs the others; rows of zeros stay
         lengths = np.linalg.norm(rows, axis=2, keepdims=True)
         return LieRanks(self.form, time, np.divide(rows, lengths, out=np.zeros_like(rows), where=lengths > 0))

@@ -40,7 +40,7 @@ def _translation(about: str = "") -> Row:
 
 
 def as_settings(scenario: Scenario, surface: str = "") -> Settings:
-    """Settings of a scenario: motion, point, duration, and its surface under the lab's name for it, if there is one.
+    """Settings of a scenario by its unit: motion, point, duration, and its surface under the lab's name, if it has one.
 
     A motion that varies is taken at time 0.
     """
@@ -49,8 +49,8 @@ def as_settings(scenario: Scenario, surface: str = "") -> Settings:
     A, b = (np.array(block.subs(numbers), dtype=float) for block in (motion.A, motion.b))
     surface = surface or scenario.surface.name
     shaped = {"surface": surface, **numbers_of(scenario.surface, surface)}
-    X0, duration = list(map(float, scenario.position)), float(scenario.duration)
-    return {"A": A.tolist(), "b": b.ravel().tolist(), "X0": X0, "duration": duration, **shaped}
+    b, X0 = ((each.ravel() / scenario.unit).tolist() for each in (b, np.array(scenario.position, dtype=float)))
+    return {"A": A.tolist(), "b": b, "X0": X0, "duration": float(scenario.duration), **shaped}
 
 
 _TILT: Settings = {"usual": (-1, 1), "step": 0.05}

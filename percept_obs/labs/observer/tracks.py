@@ -87,7 +87,7 @@ def typed_text(motion: Motion) -> str:
 
 
 def table_of(scenario: Scenario) -> Motion | None:
-    """The motion of a scenario in samples up to `LONGEST`, if it varies; a function of time is sampled every 10 ms."""
+    """The motion of a scenario by its unit, if it varies, in samples up to `LONGEST`; a function every 10 ms."""
     motion = scenario.motion
     if motion.signal is None or motion.signal.constant:
         return None
@@ -96,7 +96,7 @@ def table_of(scenario: Scenario) -> Motion | None:
         times = np.union1d(times, np.arange(0, scenario.duration + LONGEST_STEP / 2, LONGEST_STEP))
     times = np.asarray(times)
     inside = np.unique(np.concatenate([[0.0], times[(times > 0) & (times < LONGEST)]]))
-    found = sampled(motion, inside)
+    found = sampled(motion, inside, scenario.unit)
     signal = found.signal
     assert signal is not None
     assert not callable(signal.samples)
