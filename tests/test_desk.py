@@ -198,7 +198,7 @@ def test_a_system_of_ones_own_can_be_given():
     printed = desk.sheets["own, rate"]
     assert (printed["title"], printed["outputs"]) == ("rigid motion on the plane surface", ["y1", "y2", "y3"])
     assert derivation_desk(PerspectiveSystem(affine(), SURFACES["chained"]())).system()[0].surface.name == "chained"
-    with pytest.raises(ValueError, match="the desk takes a PerspectiveSystem, not 5"):
+    with pytest.raises(ValueError, match="system is the number 5; expected a PerspectiveSystem"):
         derivation_desk(5)
 
 

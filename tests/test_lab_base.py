@@ -1,8 +1,10 @@
 """What every lab shares: one bundle, errors that show, one lab a cell, formulas whose letters carry names."""
 
+import gc
 import hashlib
 import shutil
 import subprocess
+import weakref
 
 import pytest
 import sympy as sp
@@ -73,6 +75,11 @@ def test_a_cell_that_runs_again_closes_its_lab_and_leaves_those_of_other_cells(m
     assert two.comm is None
     assert other.comm is not None
     assert again.comm is not None
+    assert one.layout.comm is None
+    kept = weakref.ref(one)
+    del one
+    gc.collect()
+    assert kept() is None, "nothing holds a lab that was closed"
 
 
 def test_a_cell_that_runs_again_leaves_its_lab_where_another_cell_shows_it(monkeypatch):

@@ -284,6 +284,7 @@ def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
     def fails(form):
         return {"y1": 1}[form.measured]
 
+    walk = record(Scenario("walk", VARYING["samples"], (0.5, 0.2, 5.0), 0.5, pinhole()), camera=Camera(0.1))
     deep = ImagingSurface("deep", (X / Z, Y / Z, (X + Y) / Z), Z, (y1, y2, 1))
     rigid_form = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
     for brought, reason in (
@@ -292,6 +293,11 @@ def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
             "rounded cannot be used in this lab: the page cannot run it: floor.* cannot be printed",
         ),
         ({"observers": [nothing]}, "nothing gave NoneType for a form; it must give an Observer"),
+        ({"recordings": {"a": 5}}, "recordings is the dict .*; expected a mapping from text to a Recording"),
+        ({"recordings": {"planar": walk}}, "a recording and a scenario have the name 'planar'; give the recording"),
+        ({"scenario": walk, "frames": 5}, "frames is the number 5; expected a Frames or a mapping"),
+        ({"scenario": walk, "frames": {"a": 5}}, "frames is the dict"),
+        ({"scenario": 5}, "scenario is the number 5; expected text or a Scenario or a Recording"),
         ({"observers": [fails]}, r"fails for y1, y2 measured on the pinhole: KeyError: \('y1', 'y2'\)"),
         ({"observers": [cubic, cubic]}, "there is an observer cubic already"),
         ({"observers": [3]}, "3 is no observer; bring its name, a function of a form, or an Observer"),

@@ -36,7 +36,7 @@ def checked(thing: Thing) -> Thing:
     usual slips, what to write instead.  Numbers of sympy and fractions become floats where floats are expected.
     """
     if not isinstance(thing, type):
-        return _guarded(thing, thing.__name__, thing)
+        return _guarded(thing, thing.__qualname__.removesuffix(".__init__"), thing)
     for name, member in list(vars(thing).items()):
         if name == "__init__" or not name.startswith("_"):
             title = thing.__name__ if name == "__init__" else f"{thing.__name__}.{name}"

@@ -16,6 +16,7 @@ from percept_obs.labs.shared.lab import Lab
 from percept_obs.labs.shared.printed import part
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.validation import checked
 
 
 class DerivationDesk(Lab):
@@ -48,12 +49,8 @@ class DerivationDesk(Lab):
     title = "The derivation desk"
     sheets = traitlets.Dict(help="Sheets of a system that the package does not print, by their names.").tag(sync=True)
 
+    @checked
     def __init__(self, system: PerspectiveSystem | None = None, /, **settings: Any) -> None:
-        if system is not None and not isinstance(system, PerspectiveSystem):
-            raise ValueError(
-                f"the desk takes a PerspectiveSystem, not {system!r}; pass PerspectiveSystem(motion, surface), or "
-                "settings by their names"
-            )
         self._given = system
         opening, given = SCHEMA.opening, None
         if system is None and not set(settings) - {"face"}:

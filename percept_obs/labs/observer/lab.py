@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -51,7 +51,7 @@ from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import REMEDY, for_the_page
-from percept_obs.validation import TooMuchWork
+from percept_obs.validation import TooMuchWork, checked
 
 
 class ObserverLab(Lab):
@@ -94,12 +94,13 @@ class ObserverLab(Lab):
     blocks = BLOCKS
     frames = traitlets.Dict(help="Frames of films behind tracks, as PNG files.").tag(sync=True)
 
+    @checked
     def __init__(
         self,
         scenario: str | Scenario | Recording | None = None,
         recordings: Mapping[str, Recording] | None = None,
         *,
-        observers: Sequence[Any] | None = None,
+        observers: Any = None,
         surface: Any = None,
         frames: Frames | Mapping[str, Frames] | None = None,
         **settings: Any,
@@ -115,6 +116,8 @@ class ObserverLab(Lab):
         elif isinstance(scenario, Recording):
             tracks[scenario.source or "recording"] = scenario
             scenario = scenario.source or "recording"
+        if same := sorted(set(scenes) & set(tracks)):
+            raise ValueError(f"a recording and a scenario have the name {same[0]!r}; give the recording another name")
         asked, users = (None, {}) if observers is None else read_observers(observers, BY_NAME)
         refuse_other_motion(users)
         if surface is None and (view := view_of(users)):

@@ -40,7 +40,7 @@ from percept_obs.recording import Camera, Recording, record
 from percept_obs.system.motion import TIME
 from percept_obs.tracking import track
 from percept_obs.tracking.verdict import VERDICTS, for_the_page
-from percept_obs.validation import refuse_kind
+from percept_obs.validation import checked
 
 STEP_WORK, STEP_WORK_WITH_P = 10, 20
 """Times that a state of many points takes Python longer than one of a single point: alone, and with a P to compute."""
@@ -83,8 +83,8 @@ class PointsLab(Lab):
     title = "Many points of one state"
     blocks = BLOCKS
 
+    @checked
     def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:
-        refuse_kind("points_lab", "form", form, PointsForm | None)
         self._form = form
         if form is None and not set(settings) - {"face"}:
             settings = DRIVE | settings

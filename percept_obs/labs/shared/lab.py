@@ -28,7 +28,7 @@ from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Blocks, read_motion
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
 from percept_obs.system.surfaces import BehindCamera
-from percept_obs.validation import write_whole
+from percept_obs.validation import checked, write_whole
 
 BUNDLE = FRONT / "lab.js"
 """The page's side of all labs, built from ``front/src`` by ``npm run build``."""
@@ -99,7 +99,7 @@ class Lab(anywidget.AnyWidget):
     settings to open with, standard ones, printed texts where they are not those of the package, and other data.
     """
 
-    _esm = BUNDLE
+    _esm = BUNDLE.read_text(encoding="utf-8")  # given a path, anywidget would keep every lab for ever
     schema: Schema
     title = "A lab"
     blocks: Blocks = MappingProxyType({})
@@ -196,6 +196,7 @@ class Lab(anywidget.AnyWidget):
         """Analysis of the present settings, which the page shows when the hand rests."""
         return {}
 
+    @checked
     def save(self, file: str | PathLike[str]) -> None:
         """Write the lab into a page of its own, which opens without Python, without a server and without a network.
 
@@ -272,6 +273,7 @@ def _close_those_of_an_earlier_run(lab: Lab) -> None:
         elsewhere = [lab for lab in there if lab._shown_in - {cell}]
         for earlier in there:
             if earlier not in elsewhere:
+                earlier.layout.close()
                 earlier.close()
         labs = [weakref.ref(lab) for lab in elsewhere]
     _open[cell] = (run, [*labs, weakref.ref(lab)])

@@ -17,6 +17,7 @@ from percept_obs.labs.shared.printed import Texts
 from percept_obs.observers import Observer
 from percept_obs.observers.family import Family
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.validation.arguments import described
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +112,9 @@ def read_observers(values: Sequence[Any], known: Mapping[str, Any]) -> tuple[lis
     (['sliding_mode', 'identifier_based'], {})
     """
     if isinstance(values, str) or not isinstance(values, Sequence):
-        raise ValueError(f"observers is {values!r}; it must be a list of names, functions of a form, or observers")
+        raise ValueError(
+            f"observers is {described(values)}; it must be a list of names, functions of a form, or observers"
+        )
     names: list[str] = []
     users: dict[str, UserObserver] = {}
     name_of = {make: name for name, make in known.items()}

@@ -13,6 +13,7 @@ from percept_obs.labs.structure.texts import PHASES
 from percept_obs.structure import StructureAndMotion, StructureScenario
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion, rigid
+from percept_obs.validation.arguments import described
 
 Given = StructureAndMotion | PartitionedSystem | StructureScenario | Motion
 """A choice, a form of one, a scenario, which has one, or the velocities of camera and object."""
@@ -32,7 +33,7 @@ def opening_of(given: Given) -> tuple[Settings, Motion | None]:
     choice = given.view if isinstance(given, PartitionedSystem) else given
     if not isinstance(choice, StructureAndMotion):
         raise ValueError(
-            f"form is {given!r}; it must be a StructureAndMotion, its form, a StructureScenario, or a motion from "
+            f"form is {described(given)}; it must be a StructureAndMotion, its form, a StructureScenario, or a motion from "
             "rigid, for this lab is of a point with a scaled inverse depth; bring other forms to observer_lab or "
             "points_lab"
         )
