@@ -69,6 +69,12 @@ def node():
     )
 
 
+@pytest.fixture(scope="session")
+def xr():
+    """The module xarray, which takes a while to load."""
+    return pytest.importorskip("xarray")
+
+
 @pytest.fixture(scope="module")
 def always_compiled():
     """Many short runs of many points, which pay for compiling their loop together."""

@@ -14,7 +14,6 @@ import pytest
 import sympy as sp
 from examples import BOTH, NOISY, ON_SPHERE, ONE, ZERO
 from javascript import solve_in_node
-from numba.core.caching import IndexDataCacheFile
 from refusals import refuses
 from scipy.integrate import solve_ivp
 
@@ -264,7 +263,7 @@ def test_where_nothing_can_be_kept_the_loop_compiles_all_the_same_and_says_so_on
     elif refusal == "a full disk":
         monkeypatch.setattr(Path, "write_bytes", full)
     else:
-        monkeypatch.setattr(IndexDataCacheFile, "_open_for_write", full)
+        monkeypatch.setattr("numba.core.caching.IndexDataCacheFile._open_for_write", full)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(place / "new"))
     texts = [f"def run(x):\n    return x / {number}.0  # {refusal}\n" for number in (2, 3)]
     with pytest.warns(NotKept, match=r"compiled again the next time; .* free the disk") as told:

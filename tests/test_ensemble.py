@@ -36,7 +36,7 @@ from percept_obs.studies.plan import STATUS, Plan
 from percept_obs.studies.statistics import OUTCOMES
 from percept_obs.validation import environment
 
-xr = pytest.importorskip("xarray")
+pytestmark = pytest.mark.usefixtures("xr")
 
 EQ35 = scenarios.ma2005_eq35()
 LOSSY = Camera(0.02, NOISY.noise, dropout=0.1)
@@ -85,7 +85,7 @@ def test_a_run_is_that_of_track(make):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("observer", [ibo(ONE), ekf(ONE), ismo(BOTH)], ids=lambda observer: observer.name)
-def test_machine_code_says_the_same(observer):
+def test_machine_code_says_the_same(xr, observer):
     pytest.importorskip("numba")
     over = {"b1": [0.4, 0.5], "noise": [0.0, 0.01], "believed_b2": [0.25, 0.2]}
     fast, slow = (
@@ -144,14 +144,14 @@ def test_a_dip_between_samples_is_seen():
     assert found.status.item() == STATUS.index("not_in_front")
 
 
-def test_the_chunks_do_not_matter():
+def test_the_chunks_do_not_matter(xr):
     over = {"gain": np.linspace(2, 20, 7), "b1": [0.4, 0.5]}
     whole = ensemble(EQ35, ibo(BOTH), over, 3, 0.5, LOSSY)
     xr.testing.assert_identical(ensemble(EQ35, ibo(BOTH), over, 3, 0.5, LOSSY, chunk=5), whole)
     assert whole.sizes == {"seed": 3, "gain": 7, "b1": 2}
 
 
-def test_values_on_one_dimension_go_together():
+def test_values_on_one_dimension_go_together(xr):
     draws = xr.DataArray([2.0, 10.0, 20.0], dims="draw")
     found = ensemble(EQ35, ibo(BOTH), {"gain": draws, "start_y3": draws / 20}, 2, 1.0)
     assert found.sizes == {"seed": 2, "draw": 3}
@@ -184,7 +184,7 @@ def test_efficiency_is_the_error_over_the_bound():
 
 
 @pytest.mark.slow
-def test_a_filter_that_knows_the_noise_comes_near_to_the_bound():
+def test_a_filter_that_knows_the_noise_comes_near_to_the_bound(xr):
     camera, start = Camera(0.05, Gaussian(0.01)), xr.DataArray(0.4 + 0.05 * np.random.default_rng(1).normal(size=50))
     drawn = {"start_y3": start.rename({"dim_0": "seed"})}
     observer = ekf(BOTH, noise_variance=1e-4, hidden_variance=0.0025)
@@ -194,7 +194,7 @@ def test_a_filter_that_knows_the_noise_comes_near_to_the_bound():
 
 
 @pytest.mark.slow
-def test_it_keeps_names_units_and_settings_in_files(tmp_path):
+def test_it_keeps_names_units_and_settings_in_files(xr, tmp_path):
     found = ensemble(EQ35, ekf(BOTH), {"b1": [0.4, 0.5], "start_y3": [0.2]}, 2, 1.0, NOISY)
     assert {name: found[name].attrs["units"] for name in ("b1", "start_y3", "settling_time", "rms")} == {
         "b1": "m/s",
@@ -213,7 +213,7 @@ def test_it_keeps_names_units_and_settings_in_files(tmp_path):
 
 
 @pytest.mark.slow
-def test_an_interrupted_ensemble_keeps_what_is_done_and_goes_on(tmp_path, monkeypatch):
+def test_an_interrupted_ensemble_keeps_what_is_done_and_goes_on(xr, tmp_path, monkeypatch):
     over, store = {"gain": np.linspace(2, 20, 8)}, tmp_path / "kept.zarr"
     whole = ensemble(EQ35, ibo(BOTH), over, duration=0.5)
     compute, calls = Plan.compute, []

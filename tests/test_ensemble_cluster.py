@@ -15,7 +15,7 @@ from percept_obs import ensemble, ibo, scenarios
 from percept_obs.cli import main
 from percept_obs.studies import chunks
 
-xr = pytest.importorskip("xarray")
+pytestmark = pytest.mark.usefixtures("xr")
 
 EQ35 = scenarios.ma2005_eq35()
 OVER = {"gain": np.linspace(2, 20, 16), "b1": [0.4, 0.5]}
@@ -46,7 +46,7 @@ def alone():
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
-def test_a_killed_worker_costs_time_only(alone, tmp_path):
+def test_a_killed_worker_costs_time_only(xr, alone, tmp_path):
     distributed = pytest.importorskip("distributed")
     cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "local_directory": tmp_path}
     with distributed.LocalCluster(**cluster) as two, distributed.Client(two) as client:
@@ -67,7 +67,7 @@ def test_a_killed_worker_costs_time_only(alone, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_killed_sweep_goes_on_where_it_was(alone, tmp_path):
+def test_a_killed_sweep_goes_on_where_it_was(xr, alone, tmp_path):
     import zarr
 
     (tmp_path / "sweep.toml").write_text(SWEEP)
