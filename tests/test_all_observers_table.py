@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from examples import BOTH, NOISY, ZERO
 
-from percept_obs import record, rigid, scenarios, track
+from percept_obs import ekf, record, rigid, scenarios, track
 from percept_obs.observers import de_luca, immersion_and_invariance, integral_sliding_mode, sliding_mode
 from percept_obs.studies.all_observers import LEAST_SQUARES, all_observers
 from percept_obs.studies.comparison import relative_distance_errors
@@ -90,7 +90,7 @@ def test_references_that_are_known_now_and_then_count_when_they_are():
     [
         ([], {}, "there are no recordings"),
         (SEEN[:1], {}, r"1 of 1 recordings can be used, and two are needed.*between\(\)"),
-        ([replace(each, truth=None) for each in SEEN], {}, "0 of 4 .* left out: recording 1 .* has no truth"),
+        ([replace(each, truth=None) for each in SEEN], {"references": ("laser",)}, "0 of 4 .* it has no laser"),
         (SEEN, {"after": (30.0,)}, "0 of 4 .*the first error is asked for after 30 s"),
         (SEEN, {"after": ()}, "1 references and 0 times after"),
         (SEEN, {"after": (np.nan,)}, "after is .*finite and not negative"),
@@ -101,3 +101,66 @@ def test_references_that_are_known_now_and_then_count_when_they_are():
 def test_what_makes_no_table_is_refused(recordings, settings, message):
     with pytest.raises(ValueError, match=f"(?s){message}"):
         found(recordings, **settings)
+
+
+# Many recordings, and none with a truth.
+
+BLIND = [replace(each, truth=None) for each in SEEN]
+
+
+def test_of_many_recordings_some_are_enough_to_choose_on(monkeypatch):
+    monkeypatch.setattr("percept_obs.studies.all_observers.MOST_CHOOSING", 2)
+    many = [replace(each, source=f"{k}") for k, each in enumerate(SEEN * 2)]
+    one_call = found(many, start={"y3": 0.1})
+    assert [each.source for each in one_call.choosing] == ["0", "4"]
+    assert [each.source for each in one_call.reporting] == ["1", "2", "3", "5", "6", "7"]
+    assert "2 recordings, evenly sampled, are enough to choose gains on" in repr(one_call)
+    one_call = found(many, start={"y3": 0.1}, split="earlier and later")
+    assert [len(one_call.choosing), len(one_call.reporting)] == [2, 4]
+
+
+def test_at_most_so_many_tracks_are_taken_evenly():
+    many = [replace(each, source=f"{k}") for k, each in enumerate(SEEN + SEEN[:3])]
+    one_call = found(many, start={"y3": 0.1}, max_tracks=3)
+    assert sorted(each.source for each in (*one_call.choosing, *one_call.reporting)) == ["0", "3", "6"]
+    assert "3 of 7 recordings were taken, evenly sampled" in repr(one_call)
+    with pytest.raises(ValueError, match="max_tracks is 1; two are needed"):
+        found(many, max_tracks=1)
+
+
+def test_without_a_truth_and_a_filter_least_squares_stand_for_it():
+    one_call = found(BLIND, after=(1.0, 2.0))
+    table = one_call.table.set_index("observer")
+    assert set(table["reference"]) == {LEAST_SQUARES}
+    assert table.loc[LEAST_SQUARES, ["median", "nine_in_ten"]].isna().all(axis=None)
+    true = found(SEEN, after=(1.0, 2.0), start=one_call.start).table.set_index("observer")
+    errors, off = (true.loc[name, ["median", "nine_in_ten"]].to_numpy(float) for name in ("De Luca", LEAST_SQUARES))
+    differences = table.loc["De Luca", "median"].to_numpy()
+    assert (abs(differences - errors[:, 0]) < (1 + errors[:, 1]) * off[:, 1] / (1 - off[:, 1])).all()
+    assert set(table["trusted"]) <= {0.0, 0.5, 1.0}
+    assert one_call.start["y3"] == pytest.approx(found(SEEN, after=(1.0,)).start["y3"], rel=0.2)
+    for said in ("There is no truth: the table has differences from least squares", "differences on 2 others"):
+        assert said in repr(one_call)
+    assert one_call.side_by_side.columns.tolist()[-5:] == ["claimed 1 s", "claimed 2 s", "trusted", "cost", "remark"]
+
+
+@pytest.mark.slow
+def test_without_a_truth_the_filter_is_tuned_by_its_likelihood():
+    one_call = found(BLIND, candidates=GAINS | {ekf: ekf.candidates}, after=(1.0, 2.0))
+    table = one_call.table.set_index("observer")
+    assert set(table["reference"]) == {"extended Kalman"}
+    assert table.loc["extended Kalman", "median"].isna().all()
+    assert (table.loc["extended Kalman", "trusted"] == 1).all()
+    noise = float(table.loc["extended Kalman", "gains"].iloc[0].split()[1].rstrip(","))
+    assert noise == pytest.approx(NOISY.noise.variance, rel=0.4)
+    claimed = table.loc["extended Kalman", "claimed"].to_numpy()
+    errors = found(SEEN, candidates={ekf: ({"noise_variance": noise},)}, after=(1.0, 2.0), start=one_call.start).table
+    errors = errors[errors["observer"] == "extended Kalman"]["median"].to_numpy()
+    assert (errors < 4 * claimed).all()
+    assert "tuned by the likelihood of its innovations" in one_call._repr_html_()
+
+
+def test_one_output_without_a_truth_needs_a_filter():
+    one = [replace(each, outputs=each.outputs[:, :1], names=("y1",)) for each in BLIND]
+    with pytest.raises(ValueError, match="no filter or least squares for its place; add a filter to candidates"):
+        found(one)

@@ -39,9 +39,7 @@ def test_a_table_of_pandas_is_taken_in_its_order_only():
     table = pd.DataFrame(OUTPUTS, columns=["y1", "y2"])
     np.testing.assert_array_equal(make(outputs=table).outputs, OUTPUTS)
     np.testing.assert_array_equal(make(outputs=pd.DataFrame(OUTPUTS)).outputs, OUTPUTS)
-    with pytest.raises(
-        ValueError, match=r"outputs is a table with the columns y2, y1, but y1, y2 are expected"
-    ):
+    with pytest.raises(ValueError, match=r"outputs is a table with the columns y2, y1, but y1, y2 are expected"):
         make(outputs=table[["y2", "y1"]])
     with pytest.raises(ValueError, match="truth is a table with the columns y1, y2, but y1, y2, y3 are expected"):
         make(truth=table)

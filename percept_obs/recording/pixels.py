@@ -6,12 +6,15 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import sympy as sp
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags, vectorised
+from percept_obs.recording.camera_files import fields_of_camera
+from percept_obs.recording.text_table import PathLike
 from percept_obs.validation import checked, numbers
 
 LENS = sp.symbols("k1 k2 p1 p2 k3 k4 k5 k6", real=True)
@@ -84,6 +87,38 @@ class PixelCamera:
                 f"numbers, {', '.join(map(str, LENS))}, or none"
             )
         vars(self)["distortion"] = tuple(lens.tolist())
+
+    @classmethod
+    def from_yaml(cls, path: PathLike, camera: str | None = None) -> Any:
+        r"""Read a camera from a YAML file of OpenCV, ROS, Kalibr (camchain) or EuRoC (sensor.yaml).
+
+        Parameters
+        ----------
+        path : path
+        camera : str, optional
+            Name of a camera, such as "cam0", in a file with several.
+
+        Raises
+        ------
+        FileNotFoundError
+            If there is no such file.
+        ValueError
+            If it is no such file, or the camera is no pinhole with a lens of OpenCV's model, such as a fisheye.
+
+        See Also
+        --------
+        percept_obs.recording.camera_files.read_mount : Where the camera sits on its body (T_BS).
+
+        Examples
+        --------
+        >>> import pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     file = pathlib.Path(folder) / "sensor.yaml"
+        ...     _ = file.write_text("resolution: [752, 480]\nintrinsics: [458.6, 457.3, 367.2, 248.4]\n")
+        ...     PixelCamera.from_yaml(file).focal
+        (458.6, 457.3)
+        """
+        return cls(**fields_of_camera(path, camera))
 
     @property
     def matrix(self) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -34,8 +35,8 @@ def read_tum(path: PathLike, clock: Clock = SECONDS) -> Poses:
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it has too few columns, a cell is not a finite number, times do not increase, or a quaternion has not the
-        length 1.
+        If it is a file of COLMAP, it has too few columns, a cell is not a finite number, times do not increase, or a
+        quaternion has not the length 1.
 
     See Also
     --------
@@ -52,7 +53,19 @@ def read_tum(path: PathLike, clock: Clock = SECONDS) -> Poses:
     >>> len(read_tum(worked_folder() / "poses.txt").time)
     81
     """
+    if Path(path).is_file() and _is_colmap(Path(path)):
+        raise ValueError(
+            f"{os.fspath(path)} has the images of COLMAP, whose poses are of the world in the camera; read its folder "
+            "with percept_obs.recording.colmap.read_colmap"
+        )
     return _read(path, clock, TUM, r"\s+", TUM_EXAMPLE)
+
+
+def _is_colmap(path: Path) -> bool:
+    """Return True for a file whose rows are IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME."""
+    with open(path, encoding="utf-8", errors="replace") as lines:
+        first = next((line for line in lines if line.strip() and not line.startswith("#")), "").split()
+    return len(first) == 10 and not first[9][-1].isdigit()
 
 
 @checked

@@ -287,6 +287,21 @@ class Recording:
         each[(self.time >= begin) & (self.time < end), point] = np.nan
         return replace(self, outputs=outputs)
 
+    def to_pandas(self) -> Any:
+        """Return the samples as a table: time in seconds, outputs, true coordinates as true_y1, and distances.
+
+        Of several points the outputs and distances have a number as well, y1_0.
+        """
+        import pandas as pd
+
+        points = [f"_{k}" for k in range(self.view.point_shape[0])] if self.view.point_shape else [""]
+        parts = [(["time"], self.time), ([f"{name}{k}" for k in points for name in self.names], self.outputs)]
+        if self.truth is not None:
+            parts.append(([f"true_{symbol.name}" for symbol in self.view.coordinates], self.truth))
+        parts += [([f"{name}{k}" for k in points], values) for name, values in self.distances.items()]
+        arrays = [values.reshape(len(self.time), -1) for _, values in parts]
+        return pd.DataFrame(np.hstack(arrays), columns=[name for names, _ in parts for name in names])
+
     def sightings(self, absence: float) -> tuple[Sighting, ...]:
         """Return when points are in sight, in the order of their beginnings.
 

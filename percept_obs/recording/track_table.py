@@ -82,7 +82,7 @@ def fields_of_recordings(
         raise ValueError(f"{file} has no sample: in no row are all of {', '.join(names)} there; fill the cells")
     tracks = [(np.flatnonzero(known), file)]
     if point is not None:
-        tracks = _tracks(file, table.column(point, "point"), times, known, outputs, point, gap, shortest)
+        tracks = tracks_of_points(file, table.column(point, "point"), times, known, outputs, point, gap, shortest)
     del table  # a long one takes as much memory as all recordings
     places = [every.index(name) for name in names]
     for rows, source in tracks:
@@ -165,7 +165,7 @@ def _known(motion: Motion, time: Array, file: str) -> Flags:
     return known
 
 
-def _tracks(
+def tracks_of_points(
     file: str,
     points: Any,
     time: Array,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
@@ -14,14 +14,16 @@ from percept_obs.compile import choose
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
+from percept_obs.studies.comparison import Follow
 from percept_obs.studies.least_squares import moving_window_least_squares
-from percept_obs.studies.tuning import Gains, choose_and_report, side_by_side
+from percept_obs.studies.likelihood import MOST, STARTS, tune_by_likelihood
+from percept_obs.studies.tuning import Estimate, Gains, choose_and_report, evenly, own_length, side_by_side
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import slack_of
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
-from percept_obs.validation import checked
+from percept_obs.validation import bar, checked
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,6 +32,15 @@ Split = Literal["alternating", "earlier and later"]
 
 LEAST_SQUARES = "least squares on 2 s"
 """Label of the batch estimate in the table; it has no gains."""
+
+MOST_CHOOSING = 50
+"""Most recordings on which gains are chosen: their errors scatter less than those of different gains differ."""
+
+MOST_JUDGED = 20
+"""Most runs of an observer that are judged where there is no truth, at a tenth of a second each."""
+
+SMALLEST = 1e-5
+"""Smallest value of a gain that may be 0, over its largest, where the likelihood is looked for."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -46,6 +57,8 @@ class AllObservers:
         Recordings and times that could not be used; the table says why an observer could not be run.
     start : mapping of coordinate names to values
         Estimates at the first sample, for every observer.
+    notes : tuple of str
+        Sentences on what was sampled, and on what stands for a truth where there is none.
 
     See Also
     --------
@@ -65,6 +78,7 @@ class AllObservers:
     reporting: Sequence[Recording]
     left_out: Mapping[str, str]
     start: Mapping[str, float]
+    notes: tuple[str, ...] = ()
 
     @property
     def side_by_side(self) -> pd.DataFrame:
@@ -72,11 +86,14 @@ class AllObservers:
         return side_by_side(self.table)
 
     def _sentences(self) -> Iterator[str]:
+        begin = ", ".join(f"{name} = {value:.3g}" for name, value in self.start.items())
+        what = "differences" if self.table["trusted"].notna().any() else "errors"
         yield (
-            f"Relative errors of the distance, the median and in brackets the 90 % quantile: gains chosen on "
-            f"{len(self.choosing)} recordings, errors on {len(self.reporting)} others. Every observer starts at "
-            + ", ".join(f"{name} = {value:.3g}" for name, value in self.start.items())
+            f"Relative {what} of the distance, the median and in brackets the 90 % quantile: gains chosen on "
+            f"{len(self.choosing)} recordings, {what} on {len(self.reporting)} others. Every observer starts at "
+            f"{begin or 'its own start'}"
         )
+        yield from self.notes
         yield from (f"Left out: {name}, for {reason}" for name, reason in self.left_out.items())
 
     def __repr__(self) -> str:
@@ -95,6 +112,7 @@ def all_observers(
     after: Sequence[float] = (1.0, 2.0, 3.0),
     references: Sequence[str] = ("truth",),
     candidates: Mapping[Family, Sequence[Gains]] | None = None,
+    max_tracks: int | None = None,
     **settings: Any,
 ) -> AllObservers:
     """Run every observer on a set of recordings of single points, and say what could not be run and why.
@@ -105,7 +123,7 @@ def all_observers(
         At least two that fit together: with the outputs, the imaging surface and the kind of motion of the first one.
     split : "alternating" or "earlier and later"
         Choose gains on every other recording, from the first one on; or on the half that begins earlier, which is
-        stricter where neighbours see the same movement.
+        stricter where neighbours see the same movement.  Of many recordings 50 are enough to choose on, evenly sampled.
     start : mapping of coordinate names to values, optional
         Estimates at the first sample; twice the median distance of the recordings to choose on when left out.
     after : sequence of float
@@ -114,6 +132,8 @@ def all_observers(
         "truth", or names of measured distances; gains are chosen by the first of them.
     candidates : mapping of families to their gains, optional
         The candidates in every observer's own file when left out.
+    max_tracks : int, optional
+        Most recordings to use, evenly sampled.
     **settings
         Passed to `track`, such as ``hold`` and ``step``.
 
@@ -129,6 +149,12 @@ def all_observers(
     See Also
     --------
     percept_obs.studies.tuning.choose_and_report : takes both halves as they are given
+
+    Notes
+    -----
+    Where no recording has a truth, the extended Kalman filter is tuned by its likelihood, and its distance stands for
+    the true one: other observers have the gains with which they agree best with it, and the table has differences from
+    it.  It also has what observers claim, and the share of runs, of 20 at most, that `Run.trust` trusts.
 
     Examples
     --------
@@ -148,10 +174,13 @@ def all_observers(
         raise ValueError(f"after is {list(after)!r}; the times must be finite and not negative, in seconds")
     if split not in get_args(Split):
         raise ValueError(f"the split {split!r} is none of {' and '.join(map(repr, get_args(Split)))}")
+    if max_tracks is not None and max_tracks < 2:
+        raise ValueError(f"max_tracks is {max_tracks}; two are needed, one to choose gains on and one to report on")
     first = recordings[0]
     system = PerspectiveSystem(first.motion, first.imaging_surface)
     form = system.partition(*first.names)
-    reasons = [_why_not(each, form, first, references, min(after)) for each in recordings]
+    blind = tuple(references) == ("truth",) and all(each.truth is None for each in recordings)
+    reasons = [_why_not(each, form, first, () if blind else references, min(after)) for each in recordings]
     left_out = {
         f"recording {number} ({each.source})": reason
         for number, (each, reason) in enumerate(zip(recordings, reasons, strict=True), 1)
@@ -164,32 +193,98 @@ def all_observers(
             f"{len(usable)} of {len(recordings)} recordings can be used, and two are needed, one to choose gains on "
             f"and one to report on; cut one in two with between(){'; left out: ' + unusable if unusable else ''}"
         )
+    notes = []
+    if max_tracks is not None and len(usable) > max_tracks:
+        notes.append(f"{max_tracks} of {len(usable)} recordings were taken, evenly sampled")
+        usable = evenly(usable, max_tracks)
     if split == "alternating":
-        choosing, reporting = usable[::2], usable[1::2]
+        apart = max(2, math.ceil(len(usable) / MOST_CHOOSING))
+        choosing = usable[::apart]
+        reporting = [each for k, each in enumerate(usable) if k % apart]
     else:
         usable.sort(key=lambda recording: float(recording.time[0]))
-        choosing, reporting = usable[: len(usable) // 2], usable[len(usable) // 2 :]
+        choosing, reporting = evenly(usable[: len(usable) // 2], MOST_CHOOSING), usable[len(usable) // 2 :]
+    if len(choosing) < len(usable) // 2:
+        notes.append(f"{len(choosing)} recordings, evenly sampled, are enough to choose gains on")
     shorter = min(max(float(each.elapsed[-1]) + slack_of(each.time) for each in half) for half in (choosing, reporting))
     left_out |= {
         f"errors after {seconds:g} s": f"no recording in one of the halves lasts longer than {shorter:.3g} s"
         for seconds in after
         if seconds > shorter
     }
+    whole = first.names == tuple(symbol.name for symbol in first.imaging_surface.image_coordinates)
+    batch = {LEAST_SQUARES: moving_window_least_squares} if whole else {}
     if start is None:
-        distances = np.concatenate([each.reference(references[0]) for each in choosing])
-        start = {first.imaging_surface.inverse_distance.name: 1 / (2 * float(np.nanmedian(distances)))}
-    tried = {make: make.candidates for make in OBSERVERS} if candidates is None else candidates
+        known = [run.distance for run in map(moving_window_least_squares, choosing)] if blind and whole else []
+        known += [] if blind else [each.reference(references[0]) for each in choosing]
+        distances = np.concatenate([np.empty(0), *known])
+        distances = distances[np.isfinite(distances)]
+        inverse = first.imaging_surface.inverse_distance.name
+        start = {inverse: 1 / (2 * float(np.median(distances)))} if len(distances) else {}
+    tried = dict({make: make.candidates for make in OBSERVERS} if candidates is None else candidates)
     steps = sum(len(each.time) for each in choosing) * max(map(len, tried.values()), default=0)
-    settings = {"language": choose(None, steps)} | settings
+    settings = {"language": choose(None, len(STARTS) * MOST * steps if blind else steps)} | settings
 
     def follow(recording: Recording, observer: Observer) -> Run:
         return track(recording, observer, start, **settings)
 
-    whole = first.names == tuple(symbol.name for symbol in first.imaging_surface.image_coordinates)
-    batch = {LEAST_SQUARES: moving_window_least_squares} if whole else {}
     lasting = [seconds for seconds in after if seconds <= shorter]
-    table = choose_and_report(choosing, reporting, form, follow, tried, batch, lasting, references)
-    return AllObservers(table, choosing, reporting, left_out, start)
+    length = own_length(form, choosing)
+    if blind:
+        units = [replace(each, unit=length) for each in choosing]
+        label, estimate, sentence = _judge(units, form, follow, tried, batch)
+        choosing, reporting = (_with_distance(half, label, estimate, length) for half in (choosing, reporting))
+        references, notes = (label,), [*notes, sentence]
+    judged = MOST_JUDGED if blind else 0
+    table = choose_and_report(choosing, reporting, form, follow, tried, batch, lasting, references, length, judged)
+    if blind:
+        table.loc[table["observer"] == references[0], ["median", "nine_in_ten"]] = np.nan
+    return AllObservers(table, choosing, reporting, left_out, start, tuple(notes))
+
+
+def _with_distance(recordings: Sequence[Recording], label: str, estimate: Estimate, length: float) -> list[Recording]:
+    """Recordings with an estimated distance among those measured; those without any estimate are left out."""
+    found = []
+    for each in bar(recordings, label):
+        distance = estimate(replace(each, unit=length)).distance
+        known = np.where(np.isfinite(distance), distance, np.nan)
+        found += [replace(each, distances={**each.distances, label: known})] if np.isfinite(known).any() else []
+    return found
+
+
+def _judge(
+    choosing: Sequence[Recording],
+    form: PartitionedSystem,
+    follow: Follow,
+    tried: dict[Family, Sequence[Gains]],
+    batch: Mapping[str, Estimate],
+) -> tuple[str, Estimate, str]:
+    """Label and function of the estimate that stands for a truth, and a sentence; filters in `tried` are tuned."""
+    label, estimate, tuned = LEAST_SQUARES, batch.get(LEAST_SQUARES), ""
+    for make, candidates in tried.items():
+        observer = None if make.refusal(form) else make(form, **candidates[0])
+        if observer is None or observer.covariance is None or not observer.equations.update:
+            continue
+        values = {gain.name: {each.get(gain.name, gain.value) for each in candidates} for gain in observer.gains}
+        ranges = {
+            gain.name: (gain.low or SMALLEST * gain.high, gain.high)
+            for gain in observer.gains
+            if len(values[gain.name]) > 1
+        }
+        if ranges:
+            found = tune_by_likelihood(choosing, observer, ranges, follow)
+            observer, tried[make] = found.observer, [{**candidates[0], **found.gains}]
+            edge = f" (at the edge of what was tried: {', '.join(found.at_edge)})" if found.at_edge else ""
+            tuned = f", tuned by the likelihood of its innovations{edge}"
+        label, estimate = observer.name, lambda recording, observer=observer: follow(recording, observer)
+    if estimate is None:
+        raise ValueError("there is no truth, and no filter or least squares for its place; add a filter to candidates")
+    sentence = (
+        f"There is no truth: the table has differences from {label}{tuned}; other observers have those gains of their "
+        "candidates with which they agree best with it. They agree where all are wrong alike, as with a wrong scale of "
+        "the motion. Claimed is one standard deviation, trusted the share of runs, evenly sampled"
+    )
+    return label, estimate, sentence
 
 
 def _why_not(

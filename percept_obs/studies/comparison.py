@@ -186,7 +186,7 @@ def described(found: pd.DataFrame) -> str:
 def timed(follow: Callable[[Recording], Run], recordings: Sequence[Recording]) -> tuple[list[Run], float]:
     """Return the runs on recordings, and the seconds of computing for a second of data."""
     begin = time.perf_counter()
-    runs = [follow(recording) for recording in recordings]
+    runs = [follow(recording) for recording in bar(recordings, "runs")]
     taken = time.perf_counter() - begin
     return runs, taken / sum(float(recording.time[-1] - recording.time[0]) for recording in recordings)
 
@@ -316,4 +316,4 @@ def best_setting(
         total = float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
         return math.inf if math.isnan(total) else total  # a run that diverged is never the best
 
-    return min(candidates, key=score)
+    return candidates[int(np.argmin([score(each) for each in bar(candidates, "candidates")]))]

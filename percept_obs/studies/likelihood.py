@@ -17,13 +17,16 @@ from percept_obs.studies.comparison import Follow
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.following import StepTooLong
 from percept_obs.tracking.run import Run
-from percept_obs.validation import checked
+from percept_obs.validation import bar, checked
 
 EDGE = 0.02
 """Share of a range, in powers of ten, within which a gain counts as being at its end."""
 
 MOST = 80
 """Largest number of settings that are tried from each start."""
+
+STARTS = (0.5, 0.25, 0.75)
+"""Shares of the ranges, in powers of ten, from which the largest likelihood is looked for."""
 
 NEEDED = 1.92
 """Fall of the log-likelihood from which on a gain is not 0: half the 95 % quantile of chi-squared with one degree."""
@@ -188,7 +191,7 @@ def tune_by_likelihood(
         tried.add(inside)
         return unlikely(inside)
 
-    for share in (0.5, 0.25, 0.75):
+    for share in bar(STARTS, "tuning by likelihood"):
         start = low + share * (high - low)
         corners = np.vstack([start, start + np.diag(np.where(share < 0.6, 0.2, -0.2) * (high - low))])
         options = {"initial_simplex": corners, "maxfev": MOST, "xatol": 0.02, "fatol": 0.05}

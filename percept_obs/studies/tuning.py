@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -16,6 +17,7 @@ from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
 from percept_obs.studies.comparison import Follow, best_setting, relative_distance_errors, timed
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.following import DoesNotFit, StepTooLong
 from percept_obs.tracking.run import Run
 from percept_obs.validation import bar, checked
@@ -36,7 +38,7 @@ USUAL_SPEED = 0.2
 
 COLUMNS = (
     *("observer", "gains", "at_edge", "reference", "after", "median", "nine_in_ten"),
-    *("behind", "reset", "diverged", "cost", "refusal", "warning"),
+    *("behind", "reset", "diverged", "claimed", "trusted", "cost", "refusal", "warning"),
 )
 """Columns of the table."""
 
@@ -52,6 +54,7 @@ def choose_and_report(
     after: Sequence[float] = (1.0, 2.0, 3.0),
     references: Sequence[str] = ("truth",),
     length: float | None = None,
+    judged: int = 0,
 ) -> pd.DataFrame:
     """Choose each observer's gains on some recordings, and report its errors of the distance on others.
 
@@ -75,6 +78,8 @@ def choose_and_report(
     length : float, optional
         The recordings' unit of length for all observers, see `Recording`; `own_length` of those to choose on when left
         out.
+    judged : int
+        Number of reporting recordings, evenly sampled, whose runs are judged by `Run.trust`.
 
     Returns
     -------
@@ -83,8 +88,10 @@ def choose_and_report(
         recordings that last as long: observer, gains (the chosen ones, by the length), at_edge (names of gains at the
         smallest or largest of their candidates, beyond which better ones may lie), reference, after (s), median,
         nine_in_ten (the 90 % quantile), behind (number of recordings without an estimate in front of the camera
-        then), reset, diverged (numbers of recordings), cost (seconds of computing for a second of data), refusal (why
-        the observer cannot follow these recordings, if it cannot; its numbers are then NaN) and warning (that the steps
+        then), reset, diverged (numbers of recordings), claimed (median of the relative standard deviations of the
+        distance that the observer claims then, NaN if it claims none), trusted (share of the runs that are judged),
+        cost (seconds of computing for a second of data), refusal (why the observer cannot follow these recordings, if
+        it cannot; its numbers are then NaN) and warning (that the steps
         were too long for it, if they were).
 
     Raises
@@ -145,14 +152,18 @@ def choose_and_report(
         def estimate(recording: Recording, observer: Observer = chosen) -> Run:
             return follow(recording, observer)
 
-        rows += _errors(estimate, reporting, questions, about)
+        rows += _errors(estimate, reporting, questions, about, judged)
     for label, batch_estimate in (batch or {}).items():
-        rows += _errors(batch_estimate, reporting, questions, {"observer": label, "gains": "", "at_edge": ""})
+        rows += _errors(batch_estimate, reporting, questions, {"observer": label, "gains": "", "at_edge": ""}, judged)
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
 def _errors(
-    estimate: Estimate, recordings: Sequence[Recording], questions: Sequence[tuple[str, float]], about: dict[str, Any]
+    estimate: Estimate,
+    recordings: Sequence[Recording],
+    questions: Sequence[tuple[str, float]],
+    about: dict[str, Any],
+    judged: int,
 ) -> list[dict[str, Any]]:
     """Rows of the table for one observer."""
     with warnings.catch_warnings(record=True) as caught:
@@ -162,15 +173,37 @@ def _errors(
     about = about | {"cost": cost, "refusal": "", "warning": "".join(too_long[:1])}
     about["reset"] = sum(len(run.resets) > 0 for run in runs)
     about["diverged"] = sum(run.diverged_at is not None for run in runs)
+    about["trusted"] = math.nan
+    if judged:
+        about["trusted"] = float(np.mean([run.trust().trusted for run in evenly(runs, judged)]))
     rows = []
     for reference, seconds in questions:
         errors = relative_distance_errors(runs, seconds, reference)
         errors = np.where(np.isnan(errors), np.inf, errors)  # no estimate is no better than one behind the camera
         # the quantile by rank, for infinite errors have no mean
-        numbers = {"median": np.median(errors), "nine_in_ten": np.quantile(errors, QUANTILE, method="nearest")}
+        numbers: dict[str, Any] = {
+            "median": np.median(errors),
+            "nine_in_ten": np.quantile(errors, QUANTILE, method="nearest"),
+        }
         numbers["behind"] = np.isinf(errors).sum()
+        claims = np.array([_claim(run, seconds) for run in runs])
+        numbers["claimed"] = np.median(claims[np.isfinite(claims)]) if np.isfinite(claims).any() else np.nan
         rows.append({**about, "reference": reference, "after": seconds, **numbers})
     return rows
+
+
+def _claim(run: Run, seconds: float) -> float:
+    """Relative standard deviation of the distance that an observer claims some seconds after the first sample."""
+    late = np.flatnonzero(from_the_start(run.elapsed, seconds))
+    if run.observer.covariance is None or not len(late) or not run.estimate[late[0], -1]:
+        return math.nan
+    return math.sqrt(max(float(run.covariance[late[0], -1, -1]), 0.0)) / abs(float(run.estimate[late[0], -1]))
+
+
+def evenly(things: Sequence[Any], most: int) -> list[Any]:
+    """Return at most so many of some things, evenly sampled."""
+    few = np.linspace(0, len(things) - 1, min(most, len(things))).round().astype(int)
+    return [things[k] for k in few]
 
 
 def own_length(form: PartitionedSystem, recordings: Sequence[Recording]) -> float:
@@ -208,8 +241,9 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     -------
     pandas.DataFrame
         A column for each reference and time, with the median error and in brackets the 90 % quantile; behind
-        (recordings, at the time with the most), reset, diverged, cost (us for a second of data), and a remark: the
-        gains, those at an edge of their candidates, steps that are too long, or why the observer cannot follow.
+        (recordings, at the time with the most), reset, diverged, claimed and trusted if runs were judged, cost (us for
+        a second of data), and a remark: the gains, those at an edge of their candidates, steps that are too long, or
+        why the observer cannot follow.
 
     See Also
     --------
@@ -226,14 +260,26 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     """
     import pandas as pd
 
+    blind = table["trusted"].notna().any()
+
+    def share(value: float) -> str:
+        return "–" if np.isnan(value) else f"{value:.1%}"
+
     def error(row: Any) -> str:
-        return "–" if row.refusal else f"{row.median:.1%} ({row.nine_in_ten:.0%})".replace("inf%", "none")
+        return (
+            "–"
+            if row.refusal or np.isnan(row.median)
+            else f"{row.median:.1%} ({row.nine_in_ten:.0%})".replace("inf%", "none")
+        )
 
     def line(rows: pd.DataFrame) -> dict[str, str]:
         first = rows.iloc[0]
         found = {f"{row.reference} {row.after:g} s": error(row) for row in rows.itertuples()}
         for name in ("behind", "reset", "diverged"):
             found[name] = "–" if first.refusal else f"{rows[name].max():.0f}"
+        if blind:
+            found |= {f"claimed {row.after:g} s": share(row.claimed) for row in rows.itertuples()}
+            found["trusted"] = share(first.trusted)
         found["cost"] = "–" if first.refusal else f"{1e6 * first.cost:.0f} us/s"
         edge = first.at_edge and f"; at the edge of what was tried: {first.at_edge}"
         remark = "; ".join(filter(None, [first.gains + edge, first.warning]))

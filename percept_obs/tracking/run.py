@@ -234,6 +234,15 @@ class Run:
     def _least_squares(self) -> Fit:
         return one_point(self.observer.form, self.recording)
 
+    def to_pandas(self) -> Any:
+        """Return the recording's table with estimates as estimated_y1, and what the observer claims as deviation_y1."""
+        table, names = self.recording.to_pandas(), [symbol.name for symbol in self.view.coordinates]
+        table[[f"estimated_{name}" for name in names]] = self.estimate
+        if self.observer.covariance is not None:
+            claimed = np.sqrt(np.maximum(np.diagonal(self.covariance, axis1=1, axis2=2), 0))
+            table[[f"deviation_{name}" for name in names]] = claimed
+        return table
+
     def trust(self, tolerance: float = TOLERANCE) -> Trust:
         """Judge the last estimate without a truth.
 

@@ -1,0 +1,209 @@
+"""Models of COLMAP as text: cameras.txt, images.txt and points3D.txt become a camera's poses and tracks of points."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from percept_obs.compile import Array, Indices
+from percept_obs.recording import Recording
+from percept_obs.recording.derivatives import Derivative
+from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.poses import USUAL, Poses
+from percept_obs.recording.text_table import SECONDS, Clock, PathLike
+from percept_obs.recording.track_table import tracks_of_points
+from percept_obs.system.surfaces import pinhole
+from percept_obs.validation import checked, positive
+
+MODELS = MappingProxyType(
+    {
+        "SIMPLE_PINHOLE": (0, 0, 1, 2),
+        "PINHOLE": (0, 1, 2, 3),
+        "SIMPLE_RADIAL": (0, 0, 1, 2, 3),
+        "RADIAL": (0, 0, 1, 2, 3, 4),
+        "OPENCV": tuple(range(8)),
+        "FULL_OPENCV": tuple(range(12)),
+    }
+)
+"""Places of fx, fy, cx, cy and the lens among the parameters of COLMAP's models of a pinhole."""
+
+
+@dataclass(frozen=True, eq=False)
+class ColmapModel:
+    """A camera's poses and the points that it saw, in the model's own unit of length.
+
+    Parameters
+    ----------
+    poses : Poses
+        Of the K images, in the order of their times.
+    camera : PixelCamera
+    points : array of shape (L, 3)
+        Places in the world.
+    seen : array of shape (N, 2) of int
+        Image and point of each of N observations, by image.
+    pixels : array of shape (N, 2)
+        (u, v) of each.
+    numbers : tuple of int
+        Numbers of the points in the files.
+
+    See Also
+    --------
+    read_colmap : Reads it.
+
+    Examples
+    --------
+    >>> read_colmap("sparse/0", rate=30).recordings(pixel_sigma=0.5)  # doctest: +SKIP
+    """
+
+    poses: Poses
+    camera: PixelCamera
+    points: Array
+    seen: Indices
+    pixels: Array
+    numbers: tuple[int, ...]
+
+    def recordings(
+        self,
+        name: str = "COLMAP",
+        pixel_sigma: float | None = None,
+        derivative: Derivative = USUAL,
+        gap: float = math.inf,
+        shortest: float = 0.0,
+    ) -> tuple[Recording, ...]:
+        """Return a recording of each point, its source named; the truth is the model's point from the smoothed pose.
+
+        The noise is in pixels, if it is known; gap and shortest are those of `Recording.from_csv`.
+        """
+        import pandas as pd
+
+        path, surface, variance = self.poses.path(derivative), pinhole(), None
+        if pixel_sigma is not None:
+            variance = self.camera.variance(pixel_sigma)
+        image, place = self.seen.T
+        outputs, time = self.camera.image(self.pixels), path.time[image]
+        world = self.points[place] - path.position[image]
+        truths = surface.project(path.rotation[image].inv().apply(world))
+        truths[truths[:, -1] <= 0] = np.nan  # a wrong match
+        labels, known = pd.Categorical([str(self.numbers[k]) for k in place]), np.ones(len(time), dtype=bool)
+        return tuple(
+            Recording(
+                time[rows],
+                outputs[rows],
+                ("y1", "y2"),
+                surface,
+                path.motion,
+                truth=truths[rows],
+                noise_variance=variance,
+                source=source,
+            )
+            for rows, source in tracks_of_points(name, labels, time, known, outputs, "point", gap, shortest)
+        )
+
+
+@checked
+def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECONDS) -> ColmapModel:
+    """Return the model in a folder of COLMAP's text files.
+
+    The scale of such a model is arbitrary, and with it every distance.
+
+    Parameters
+    ----------
+    folder : path
+        With cameras.txt, images.txt and points3D.txt, as ``colmap model_converter --output_type TXT`` writes them.
+    rate : float, optional
+        Images a second; the last number in an image's name counts them, or their order if there is no number in one.
+    clock : Clock
+        Without a rate the last number in an image's name is its time, by this clock: ``Clock(tick=1e-9)`` for EuRoC.
+
+    Raises
+    ------
+    FileNotFoundError
+        If a file is missing.
+    ValueError
+        If a row is none of COLMAP, there are several cameras or one that is no pinhole, or names give no times.
+
+    See Also
+    --------
+    read_tum : Poses alone.
+
+    Notes
+    -----
+    J. L. Schönberger and J.-M. Frahm, Structure-from-Motion Revisited (CVPR 2016).
+
+    Examples
+    --------
+    >>> model = read_colmap("sparse/0", rate=30)  # doctest: +SKIP
+    >>> recordings = model.recordings(pixel_sigma=0.5, gap=0.2, shortest=1.0)  # doctest: +SKIP
+    """
+    if rate is not None:
+        positive(rate=rate)
+    place = Path(folder)
+    cameras, images, points = (place / name for name in ("cameras.txt", "images.txt", "points3D.txt"))
+    try:
+        lenses = {row[0]: row[1:] for row in _rows(cameras)}
+        lines = [*_rows(images, blank=True)]
+        heads, bodies = lines[::2], [np.array(row, dtype=float).reshape(-1, 3) for row in lines[1::2]]
+        names = [" ".join(head[9:]) for head in heads]
+        numbers = np.array([head[1:8] for head in heads], dtype=float).reshape(len(heads), 7)
+        used = {head[8] for head in heads}
+        world = {int(row[0]): [float(cell) for cell in row[1:4]] for row in _rows(points)}
+        if len(bodies) != len(heads) or not all(names) or len(heads) < 2:
+            raise ValueError(f"{len(heads)} images, with {len(bodies)} rows of points; expected two images, and names")
+        if len(used) > 1:
+            raise ValueError(f"{len(used)} cameras, {', '.join(sorted(used))}; a recording is of one")
+        (model, width, height, *parameters) = lenses[min(used)]
+        if model not in MODELS:
+            raise ValueError(f"a camera of the model {model}, none of {', '.join(MODELS)}: undistort the images")
+        time = _times(names, rate, clock)
+        fx, fy, cx, cy, *lens = (float(parameters[k]) for k in MODELS[model])
+        camera = PixelCamera((fx, fy), (cx, cy), (int(width), int(height)), [*lens, *[0.0] * (-len(lens) % 4)])
+    except (ValueError, KeyError, IndexError) as error:
+        raise ValueError(f"{os.fspath(folder)} is no text model of COLMAP with one camera: it has {error}") from None
+    order = np.argsort(time)
+    turn = Poses(time[order], numbers[order, 4:], numbers[order][:, [1, 2, 3, 0]]).rotation.inv()
+    poses = Poses(time[order], -turn.apply(numbers[order, 4:]), turn.as_quat())
+    known = {number: k for k, number in enumerate(world)}
+    seen: list[tuple[int, int]] = []
+    pixels: list[list[float]] = []
+    for k, row in enumerate(order):
+        kept = {int(number): pixel for *pixel, number in bodies[row][::-1].tolist() if int(number) in known}
+        for number, pixel in reversed(kept.items()):  # of a point seen twice, the first
+            seen.append((k, known[number]))
+            pixels.append(pixel)
+    if not seen:
+        raise ValueError(f"{os.fspath(folder)} has no point that an image sees")
+    return ColmapModel(poses, camera, np.array([*world.values()]), np.array(seen), np.array(pixels), tuple(world))
+
+
+def _rows(file: Path, blank: bool = False) -> Iterator[list[str]]:
+    """Yield the cells of each row; comments are left out, and blank ones unless they count."""
+    if not file.is_file():
+        raise FileNotFoundError(f"there is no {file}; name a folder with cameras.txt, images.txt and points3D.txt")
+    with open(file, encoding="utf-8") as lines:
+        for line in lines:
+            if not line.startswith("#") and (blank or line.strip()):
+                yield line.split()
+
+
+def _times(names: Sequence[str], rate: float | None, clock: Clock) -> Array:
+    """Seconds of images, by the last number in their names or by their order."""
+    found = [re.findall(r"\d+(?:\.\d+)?", Path(name).stem)[-1:] for name in names]
+    if rate is None:
+        if not all(found):
+            raise ValueError(f"the image {names[found.index([])]!r} without a number for its time; give its rate")
+        time = clock.seconds([number for (number,) in found])
+    elif all(found):
+        time = np.array([float(Decimal(number)) for (number,) in found]) / rate
+    else:
+        time = np.argsort(np.argsort(names)) / rate
+    if len(set(time.tolist())) < len(time):
+        raise ValueError(f"images with the same time, among {', '.join(names[:3])}; give a rate")
+    return time - time.min() if rate else time
