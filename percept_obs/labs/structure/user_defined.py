@@ -33,8 +33,8 @@ def opening_of(given: Given) -> tuple[Settings, Motion | None]:
     choice = given.view if isinstance(given, PartitionedSystem) else given
     if not isinstance(choice, StructureAndMotion):
         raise ValueError(
-            f"form is {described(given)}; it must be a StructureAndMotion, its form, a StructureScenario, or a motion from "
-            "rigid, for this lab is of a point with a scaled inverse depth; bring other forms to observer_lab or "
+            f"form is {described(given)}; it must be a StructureAndMotion, its form, a StructureScenario, or a motion "
+            "from rigid, for this lab is of a point with a scaled inverse depth; bring other forms to observer_lab or "
             "points_lab"
         )
     if isinstance(given, PartitionedSystem) and not same_system(given, choice.form):
