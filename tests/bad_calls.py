@@ -24,17 +24,20 @@ import percept_obs as po
 from percept_obs import observers, points, structure
 from percept_obs.compile.equations import Equations
 from percept_obs.observability import empirical_gramian, error_gramian, instantaneous, lie_ranks
+from percept_obs.observers import gains
 from percept_obs.observers.integral_sliding_mode import tolerable_amplification, ultimate_bound
 from percept_obs.points import gramian
 from percept_obs.points import scenarios as points_scenarios
 from percept_obs.points.manoeuvre import Manoeuvre
 from percept_obs.points.ray import ray_turning
+from percept_obs.recording import render
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.pose_files import write_tum
 from percept_obs.recording.stereo_mat import read_stereo_mat
 from percept_obs.structure import pixels
 from percept_obs.structure import scenarios as structure_scenarios
 from percept_obs.studies import chatter, comparison, consistency, least_squares
+from percept_obs.studies.trust import trust_over_time
 from percept_obs.system.signal import Signal
 
 PACKAGE = str(Path(po.__file__).parent)
@@ -220,6 +223,9 @@ def calls():
         (chatter.chatter, {"recording": recording, "observer": observer, "steps": [0.01], "after": 0.1}),
         (chatter.effort, {"scenario": scenario, "observer": observer, "duration": 0.5, "tolerance": 1e-3, "most": 300}),
         (least_squares.moving_window_least_squares, {"recording": recording, "window": 1.0}),
+        (render, {"recording": recording, "count": 2, "size": 8, "radius": 0.1}),
+        (gains.grid, {"gain": [1.0, 2.0]}),
+        (trust_over_time, {"run": run, "tolerance": 0.1, "count": 3}),
     ]
     return [(getattr(f, "__qualname__", type(f).__name__), f, arguments) for f, arguments in good]
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
+import pandas as pd
 import pytest
 import sympy as sp
 from examples import BOTH
@@ -16,6 +17,7 @@ from percept_obs import (
     BehindCamera,
     Camera,
     PerspectiveSystem,
+    PointsForm,
     Scenario,
     affine,
     ekf,
@@ -30,12 +32,16 @@ from percept_obs import (
     steered,
     track,
 )
+from percept_obs.exercises import reach
+from percept_obs.figures import image_plane, signals
 from percept_obs.observers import lao
+from percept_obs.observers.gains import grid
 from percept_obs.points import PointsScenario, independent_points
 from percept_obs.points.scenarios import moving_body
+from percept_obs.recording import render
 from percept_obs.recording.path import varying_path
-from percept_obs.studies.comparison import compare
-from percept_obs.system.motion import AreTheseDegrees
+from percept_obs.studies.comparison import compare, summary
+from percept_obs.system.motion import TIME, AreTheseDegrees
 from percept_obs.validation import TooMuchWork, WrongKind, checked, expression
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
@@ -107,6 +113,28 @@ def test_numbers_become_expressions():
         sp.Symbol("a"),
         sp.Float(0.5),
     ]
+
+
+def at_time(*entries):
+    """A point whose motion is given by expressions of time."""
+    return Scenario("s", affine(sp.zeros(3, 3), entries), (1, 1, 3), 2, pinhole()).points([0.0, 2.0])
+
+
+test_what_has_no_sense_is_refused_in_a_sentence = refuses(
+    lambda call: call(),
+    (lambda: at_time(0, 0, sp.gamma(TIME)), "the motion of 's' has no value at 0 s"),
+    (lambda: at_time(0, 0, 1 / TIME), "it changes too fast: slow it down"),
+    (lambda: at_time(sp.sin(10**6 * TIME), 0, 0), "it changes too fast: slow it down"),
+    (lambda: affine(np.eye(3), lambda: 1), "the motion's b .* must be a function of a time alone: too many"),
+    (lambda: PointsForm(rigid([0, 0, 1], [0, 0, 0], [0, 0, 0]), np.zeros((2, 3, 3))), "a block of C is 0"),
+    (lambda: summary(pd.DataFrame({"a": [1]})), "the table has no columns cost, .*; give one from compare"),
+    (lambda: render(SHORT, 0), "0 frames of 160 pixels a side are none"),
+    (lambda: render(SHORT, size=10**6), "pixels, and at most .*; take fewer or smaller frames"),
+    (lambda: image_plane(SHORT, ax=5), "ax is the number 5; expected an Axes"),
+    (lambda: signals(track(SHORT, ibo(BOTH)), axes=[1, 2, 3, 4]), "axes is the number 1; expected an Axes"),
+    (lambda: grid(gain=5), "gain is the number 5; .*: put it into a list"),
+    (lambda: reach(1.0, lambda gain: {"seconds": "soon"}, seconds=2), "the experiment gives no number seconds"),
+)
 
 
 test_too_much_work_is_refused_before_it_begins = refuses(

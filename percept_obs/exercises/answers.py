@@ -8,6 +8,7 @@ from types import EllipsisType
 from typing import Any
 
 from percept_obs.checking import Review, check, target_of
+from percept_obs.validation.kinds import is_real
 
 
 @dataclass(frozen=True)
@@ -179,8 +180,8 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
     except REFUSALS as error:
         quoted = "; a number stands without quotes" if isinstance(mine, str) else ""
         return Attempt(None, f"The experiment cannot run with {mine!r}{quoted}. It says: {error}")
-    if missing := sorted(most.keys() - numbers.keys()):
-        raise ValueError(f"the experiment gives no {', '.join(missing)}; it gives {', '.join(numbers)}")
+    if missing := [name for name in sorted(most) if not is_real(numbers.get(name))]:
+        raise ValueError(f"the experiment gives no number {', '.join(missing)}; it gives {', '.join(numbers)}")
     right = all(numbers[name] <= limit for name, limit in most.items())
     results = [f"{name.replace('_', ' ')} {numbers[name]:.3g} ({limit:g} is allowed)" for name, limit in most.items()]
     return Attempt(right, f"{'Reached' if right else 'Not reached yet'}: {', '.join(results)}.")

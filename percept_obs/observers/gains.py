@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.validation import refuse_kind, refuse_names, set_fields
+from percept_obs.validation import checked, refuse_kind, refuse_names, set_fields
 
 
 @dataclass(frozen=True)
@@ -82,6 +82,7 @@ class Gain:
         return f"{self.name} : float\n    {self.symbol}, {self.meaning}{unit}{condition}.  Default {self.value:.4g}."
 
 
+@checked
 def grid(**values: Sequence[float]) -> tuple[dict[str, float], ...]:
     """Return every combination of the gains' values by name; the last gain changes fastest.
 

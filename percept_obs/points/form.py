@@ -107,6 +107,8 @@ class PointsForm:
         if not any(block.free_symbols for block in self.C):
             if not np.isfinite(self.blocks).all():
                 raise ValueError("C has entries that are not finite; remove or repair the NaN or infinite ones")
+            if not self.blocks.any(axis=(1, 2)).all():
+                raise ValueError("a block of C is 0, so that its point is in the camera; leave the point out")
             if self.unseen.shape[1]:
                 named = in_words(self.unseen, self.names)
                 many = "a direction" if len(named) == 1 else f"{len(named)} directions"

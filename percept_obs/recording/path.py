@@ -95,10 +95,12 @@ def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ())
             solver = DOP853(rate, begin, state, end, longest, RELATIVE_ERROR, ABSOLUTE_ERROR, first_step=longest)
             while solver.status == "running":
                 solver.step()
-                if evaluations + solver.nfev > MOST_EVALUATIONS or solver.status == "failed":
+                made = evaluations + solver.nfev
+                hopeless = made > MOST_EVALUATIONS / 20 and made * last > 5 * MOST_EVALUATIONS * solver.t
+                if hopeless or made > MOST_EVALUATIONS or solver.status == "failed":
                     raise TooMuchWork(
-                        f"up to {solver.t:.4g} s of {last:.4g} s the motion had to be evaluated "
-                        f"{MOST_EVALUATIONS} times; it changes too fast: slow it down or shorten the duration"
+                        f"up to {solver.t:.4g} s of {last:.4g} s the motion had to be evaluated {made} times; it "
+                        "changes too fast: slow it down or shorten the duration"
                     )
                 between = slice(*np.searchsorted(times, [solver.t_old, solver.t], side="right"))
                 if between.start < between.stop:

@@ -116,8 +116,14 @@ class Scenario(Scene):
             A, b = coefficients(motion, motion.known(times[:1]))
             return constant_path(A[0], b[0], start, times)
         flow = _flow(point_in_motion(motion.A, motion.b, motion.parameters))
-        breaks = motion.signal.breaks(times[-1])
-        return varying_path(lambda t, x: flow(x, (), motion.known(float(t))[0]), start, times, breaks)
+
+        def rate(time: float, state: Array) -> ArrayLike:
+            try:
+                return flow(state, (), motion.known(float(time))[0])
+            except (ArithmeticError, ValueError) as error:
+                raise ValueError(f"the motion of {self.name!r} has no value at {time:.6g} s: {error}") from None
+
+        return varying_path(rate, start, times, motion.signal.breaks(times[-1]))
 
     @property
     def view(self) -> View:

@@ -156,6 +156,8 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     """
     import pandas as pd
 
+    if missing := sorted({"observer", "settling_time", "resets", "diverged_at", *MEASURES} - set(table)):
+        raise ValueError(f"the table has no columns {', '.join(missing)}; give one from compare()")
     observers = table.groupby("observer", sort=False)
     counts = {
         "failed": np.isinf(table["settling_time"]),

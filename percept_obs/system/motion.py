@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -335,6 +336,12 @@ def _function(value: ArrayLike | Callable[[float], ArrayLike], block: sp.Immutab
         row = _rows(value, block, 1)
         return lambda times: np.repeat(row, len(times), axis=0)
     shape = _shape(block)
+    try:
+        signature(value).bind(0.0)
+    except TypeError as error:
+        raise ValueError(f"{_title(block)} must be a function of a time alone: {error}") from None
+    except ValueError:  # some functions do not tell their arguments
+        pass
 
     def at(times: Array) -> Array:
         found = [value(time) for time in times.tolist()]
