@@ -13,6 +13,8 @@ from percept_obs.compile import Array
 from percept_obs.recording.text_table import PathLike
 from percept_obs.validation import checked
 
+__all__ = ["read_mount"]
+
 LARGEST = 1_000_000
 """Bytes in the largest file of a camera; others have a few thousand."""
 

@@ -25,7 +25,7 @@ FOLDERS = {
     "studies": "all_observers chatter comparison consistency diagnosis fields least_squares likelihood sensitivity "
     "sweep trust tuning",
     "system": "derivation",
-    "recording": "poses pose_files scenarios stereo_mat track_files utias worked",
+    "recording": "camera_files colmap poses pose_files scenarios stereo_mat track_files utias worked",
     "checking": "",
     "exercises": "",
     "papers": "",
