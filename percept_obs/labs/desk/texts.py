@@ -70,7 +70,7 @@ def sheet_for_the_page(system: PerspectiveSystem, outputs: tuple[str, ...], obse
     return title | {
         "given": sheet.given,
         "letters": [key(letter.name) for letter in sheet.letters],
-        "known": list(symbols),
+        "known": sorted(symbols),
         "markup": {name: markup(symbol) for name, symbol in symbols.items()},
         "meant": {name: _text(value) for name, value in meant.items()},
         "labels": labels,
