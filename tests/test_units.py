@@ -141,7 +141,9 @@ def consistent(form, unit):
 
 def bounded(form, unit):
     found = cramer_rao(seen(unit), form, doubt=1e-4)
-    return {"relative": found.relative, "deviation": found.deviation * np.array([1, 1, unit]), "kept": found.kept()[0]}
+    shares, directions = found.kept()
+    told = {"deviation": found.deviation * np.array([1, 1, unit]), "directions": np.abs(directions)}
+    return told | {"relative": found.relative, "shares": shares}
 
 
 def least(form, unit):
@@ -289,7 +291,7 @@ def test_default_gains_suit_a_recordings_own_unit(unit, depth, speed):
 
 
 def test_the_table_of_gains_has_its_own_unit_and_a_camera_at_rest_has_1():
-    few = [replace(seen(unit), unit=1.0) for unit in (1.0, *UNITS.values())]
+    few = [replace(seen(1.0), unit=3.0), *(seen(unit) for unit in UNITS.values())]
     for measured in OUTPUTS:
         lengths = [own_length(SYSTEMS[affine].partition(*measured), [each]) for each in few]
         np.testing.assert_allclose(lengths, lengths[0] * np.array([1, *UNITS.values()]), rtol=1e-12)
