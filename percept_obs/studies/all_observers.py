@@ -234,7 +234,12 @@ def all_observers(
         units = [replace(each, unit=length) for each in choosing]
         label, estimate, sentence = _judge(units, form, follow, tried, batch)
         choosing, reporting = (_with_distance(half, label, estimate, length) for half in (choosing, reporting))
-        references, notes = (label,), [*notes, sentence]
+        measured = ", ".join(first.distances)
+        notes += [
+            sentence,
+            *([f"To compare with what was measured, name references, such as {measured}"] * bool(measured)),
+        ]
+        references = (label,)
     judged = MOST_JUDGED if blind else 0
     table = choose_and_report(choosing, reporting, form, follow, tried, batch, lasting, references, length, judged)
     if blind:
@@ -267,7 +272,7 @@ def _judge(
             continue
         values = {gain.name: {each.get(gain.name, gain.value) for each in candidates} for gain in observer.gains}
         ranges = {
-            gain.name: (gain.low or SMALLEST * gain.high, gain.high)
+            gain.name: (0.01 * gain.low or SMALLEST * gain.high, gain.high)
             for gain in observer.gains
             if len(values[gain.name]) > 1
         }

@@ -188,7 +188,7 @@ def described(found: pd.DataFrame) -> str:
 def timed(follow: Callable[[Recording], Run], recordings: Sequence[Recording]) -> tuple[list[Run], float]:
     """Return the runs on recordings, and the seconds of computing for a second of data."""
     begin = time.perf_counter()
-    runs = [follow(recording) for recording in bar(recordings, "runs")]
+    runs = [follow(recording) for recording in recordings]
     taken = time.perf_counter() - begin
     return runs, taken / sum(float(recording.time[-1] - recording.time[0]) for recording in recordings)
 
@@ -238,27 +238,33 @@ def relative_distance_errors(
     """
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
-    errors: list[float] = []
-    sources: list[str] = []
-    for run in runs:
-        recording = run.recording
-        sources.append(repr(recording.source))
-        shape = (len(recording.time), -1)
-        known = range(recording.seen[0].size)
-        used = known if points is None else points
-        if not set(used) <= set(known):
-            raise ValueError(f"there are no points {sorted(set(used) - set(known))}; there are 0 to {max(known)}")
-        distance, estimate = (each.reshape(shape) for each in (recording.reference(reference), run.distance))
-        seen = recording.seen.reshape(shape) & np.isfinite(distance)
-        for sighting in recording.sightings(absence):
-            samples = np.flatnonzero(seen[: sighting.last + 1, sighting.point])
-            late = samples[run.time[samples] - run.time[sighting.first] >= after - slack_of(run.time)]
-            if len(late) and sighting.point in used:
-                place = (late[0], sighting.point)
-                errors.append(abs(estimate[place] / distance[place] - 1))
+    each = [(run.recording.source, errors_of(run, after, reference, absence, points)) for run in runs]
+    errors = [error for _, found in each for error in found]
     if not errors:
-        raise ValueError(f"no sighting in the recording {' or '.join(sources)} lasts {after} s; after must be shorter")
+        sources = " or ".join(repr(source) for source, _ in each)
+        raise ValueError(f"no sighting in the recording {sources} lasts {after} s; after must be shorter")
     return np.array(errors)
+
+
+def errors_of(
+    run: Run, after: float, reference: str, absence: float = math.inf, points: Collection[int] | None = None
+) -> list[float]:
+    """Return the `relative_distance_errors` of one run, none if no sighting lasts as long."""
+    recording, errors = run.recording, []
+    shape = (len(recording.time), -1)
+    known = range(recording.seen[0].size)
+    used = known if points is None else points
+    if not set(used) <= set(known):
+        raise ValueError(f"there are no points {sorted(set(used) - set(known))}; there are 0 to {max(known)}")
+    distance, estimate = (each.reshape(shape) for each in (recording.reference(reference), run.distance))
+    seen = recording.seen.reshape(shape) & np.isfinite(distance)
+    for sighting in recording.sightings(absence):
+        samples = np.flatnonzero(seen[: sighting.last + 1, sighting.point])
+        late = samples[run.time[samples] - run.time[sighting.first] >= after - slack_of(run.time)]
+        if len(late) and sighting.point in used:
+            place = (late[0], sighting.point)
+            errors.append(float(abs(estimate[place] / distance[place] - 1)))
+    return errors
 
 
 @checked

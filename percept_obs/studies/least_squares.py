@@ -107,18 +107,24 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
     rays = np.stack(vectorised(surface.image_coordinates, surface.ray, surface.values)(*recording.outputs.T), axis=-1)
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
     across_ray = np.nan_to_num(np.eye(3) - rays[:, :, None] * rays[:, None, :])  # a lost sample adds nothing
-    back = maps_between(recording.motion, time[::-1])[::-1]
-    squares = np.zeros((count, 4, 4))  # of the unknown (X, 1)
-    # from the position at the window's end to that of the sample some places before it
-    to_earlier = np.broadcast_to(np.eye(4), (count, 4, 4)).copy()
-    for lag in range(count):
-        ends = np.flatnonzero((time[lag:] - time[: count - lag]) <= window + slack_of(time)) + lag
-        if not len(ends):
-            break
-        if lag:
-            to_earlier[ends] = back[ends - lag] @ to_earlier[ends]
-        rows = across_ray[ends - lag] @ to_earlier[ends, :3]
-        squares[ends] += np.swapaxes(rows, 1, 2) @ rows
+    spans = np.zeros((count, 4, 4))  # squares of the unknown (X, 1) from the last 1, 2, 4, ... samples before each
+    spans[:, :3, :3] = np.swapaxes(across_ray, 1, 2) @ across_ray
+    back = np.concatenate([np.eye(4)[None], maps_between(recording.motion, time[::-1])[::-1]])  # over such a span
+    samples = np.arange(count)
+    counts = samples + 1 - np.searchsorted(time, time - window - slack_of(time))
+    squares, reached = np.zeros((count, 4, 4)), samples.copy()
+    to_reached = np.broadcast_to(np.eye(4), (count, 4, 4)).copy()
+    size = 1
+    while size <= counts.max():
+        # a window is put together of such spans, as the binary digits of its number of samples say
+        ends = np.flatnonzero(counts & size)
+        maps, at = to_reached[ends], reached[ends]
+        squares[ends] += np.swapaxes(maps, 1, 2) @ spans[at] @ maps
+        to_reached[ends], reached[ends] = back[at] @ maps, at - size
+        earlier = np.maximum(samples - size, 0)
+        spans = spans + np.swapaxes(back, 1, 2) @ spans[earlier] @ back
+        back = back[earlier] @ back
+        size *= 2
     values = np.linalg.eigvalsh(squares[:, :3, :3])
     good = np.flatnonzero(values[:, 0] * LARGEST_CONDITION > values[:, -1])
     points = np.linalg.solve(squares[good, :3, :3], -squares[good, :3, 3:])[:, :, 0]

@@ -15,7 +15,7 @@ from percept_obs.observability.windows import information_along
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
-from percept_obs.studies.comparison import Follow, best_setting, relative_distance_errors, timed
+from percept_obs.studies.comparison import Follow, best_setting, errors_of, timed
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.following import DoesNotFit, StepTooLong
@@ -166,28 +166,40 @@ def _errors(
     judged: int,
 ) -> list[dict[str, Any]]:
     """Rows of the table for one observer."""
+    judges = {id(each) for each in evenly(recordings, judged)}
+    errors: dict[tuple[str, float], list[float]] = {question: [] for question in questions}
+    claims: dict[float, list[float]] = {seconds: [] for _, seconds in questions}
+    reset = diverged = 0
+    trusted, cost = [], []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", StepTooLong)
-        runs, cost = timed(estimate, recordings)
+        for recording in bar(recordings, f"runs of {about['observer']}"):  # no run is kept
+            (run,), each = timed(estimate, [recording])
+            cost.append((each, float(recording.elapsed[-1])))
+            reset, diverged = reset + (len(run.resets) > 0), diverged + (run.diverged_at is not None)
+            for reference, seconds in questions:
+                errors[reference, seconds] += errors_of(run, seconds, reference)
+            for seconds, found in claims.items():
+                found.append(_claim(run, seconds))
+            if id(recording) in judges:
+                trusted.append(run.trust().trusted)
     too_long = [str(warning.message) for warning in caught if issubclass(warning.category, StepTooLong)]
-    about = about | {"cost": cost, "refusal": "", "warning": "".join(too_long[:1])}
-    about["reset"] = sum(len(run.resets) > 0 for run in runs)
-    about["diverged"] = sum(run.diverged_at is not None for run in runs)
-    about["trusted"] = math.nan
-    if judged:
-        about["trusted"] = float(np.mean([run.trust().trusted for run in evenly(runs, judged)]))
+    lengths = [length for _, length in cost]
+    about = about | {"cost": np.average([each for each, _ in cost], weights=lengths), "refusal": ""}
+    about |= {"reset": reset, "diverged": diverged, "warning": "".join(too_long[:1])}
+    about["trusted"] = float(np.mean(trusted)) if judged else math.nan
     rows = []
     for reference, seconds in questions:
-        errors = relative_distance_errors(runs, seconds, reference)
-        errors = np.where(np.isnan(errors), np.inf, errors)  # no estimate is no better than one behind the camera
-        # the quantile by rank, for infinite errors have no mean
-        numbers: dict[str, Any] = {
-            "median": np.median(errors),
-            "nine_in_ten": np.quantile(errors, QUANTILE, method="nearest"),
+        if not errors[reference, seconds]:
+            raise ValueError(f"no recording to report on lasts {seconds} s; after must be shorter")
+        # no estimate is no better than one behind the camera
+        of_all = np.nan_to_num(errors[reference, seconds], nan=np.inf, posinf=np.inf)
+        known = np.array(claims[seconds])[np.isfinite(claims[seconds])]
+        numbers = {
+            **{"median": np.median(of_all), "claimed": np.median(known) if len(known) else math.nan},
+            # by rank, for infinite errors have no mean
+            **{"nine_in_ten": np.quantile(of_all, QUANTILE, method="nearest"), "behind": np.isinf(of_all).sum()},
         }
-        numbers["behind"] = np.isinf(errors).sum()
-        claims = np.array([_claim(run, seconds) for run in runs])
-        numbers["claimed"] = np.median(claims[np.isfinite(claims)]) if np.isfinite(claims).any() else np.nan
         rows.append({**about, "reference": reference, "after": seconds, **numbers})
     return rows
 
