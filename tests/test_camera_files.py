@@ -100,6 +100,11 @@ def test_the_mount_is_that_of_the_camera_on_its_body(tmp_path, text, name):
         (EUROC.replace("458.5,", ".inf,"), None, "expected 4 finite numbers"),
         (EUROC.replace("458.5,", "wide,"), None, "expected 4 finite numbers"),
         (ROS.replace("458.5, 0.,", "458.5, 3.,"), None, "expected fx 0 cx, 0 fy cy, 0 0 1"),
+        (
+            ROS.replace("coefficients", "coefficents"),
+            None,
+            "the lens 'plumb_bob' and no distortion_coefficients; there",
+        ),
         (ROS.replace("1e-5,", ""), None, "the distortion is .* it must be 4, 5, 8"),
         ("a: [", None, "is no YAML file of a camera"),
         ("just text", None, "is no YAML file of a camera .no names of values"),

@@ -194,13 +194,14 @@ def test_a_table_with_comments_and_spaces_is_the_plain_one(tmp_path):
     rows += ["0.8,a,1,4,z"]
     (tmp_path / "t.csv").write_text("# a comment\n\n" + "\n# another\n".join(rows))
     (tmp_path / "plain.csv").write_text("\n".join(rows).replace(" ", ""))
-    own, plain = (
-        Recording.from_csv(tmp_path / name, MOTION, camera=CAMERA, point="id") for name in ("t.csv", "plain.csv")
-    )
-    assert [each.source[-7:] for each in own] == [each.source[-7:] for each in plain] == ["point b", "point a"]
-    for one, two in zip(own, plain, strict=True):
-        np.testing.assert_array_equal(one.time, two.time)
-        np.testing.assert_array_equal(one.outputs, two.outputs)
+    (tmp_path / "headed.csv").write_text("\ufeff# a comment\n\n" + "\n".join(rows).replace(" ", ""), encoding="utf-8")
+    files = ("t.csv", "plain.csv", "headed.csv")
+    read = [Recording.from_csv(tmp_path / name, MOTION, camera=CAMERA, point="id") for name in files]
+    for recordings in read:
+        assert [each.source[-7:] for each in recordings] == ["point b", "point a"]
+        for one, two in zip(recordings, read[0], strict=True):
+            np.testing.assert_array_equal(one.time, two.time)
+            np.testing.assert_array_equal(one.outputs, two.outputs)
 
 
 # The real recording, the way of one's own.

@@ -39,6 +39,8 @@ def fields_of_camera(path: PathLike, camera: str | None) -> dict[str, Any]:
         if (matrix[[1, 3, 6, 7]] != 0).any() or matrix[8] != 1:
             raise ValueError(f"{file} has the camera_matrix {matrix.tolist()}; expected fx 0 cx, 0 fy cy, 0 0 1")
     key = next((key for key in ("distortion_coefficients", "distortion_coeffs") if key in found), None)
+    if not key and lens not in LENSES[:2]:
+        raise ValueError(f"{file} has the lens {lens!r} and no distortion_coefficients; there are {', '.join(found)}")
     distortion = _numbers(file, found, key).tolist() if key else []
     while len(distortion) > 8 and not distortion[-1]:  # a thin prism or a tilt that is none
         distortion.pop()
