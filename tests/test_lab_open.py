@@ -210,6 +210,7 @@ test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run = refuses(
     (observer_lab, {"motion": "b = step([1, 2, 3])"}, "step is of one number"),
     (observer_lab, {"motion": "b1 = 1 if 2 else 0"}, '"if" is of a whole entry'),
     (observer_lab, {"motion": "b1 = 2 (1 if t < 2 else 0)"}, '"if" is of a whole entry'),
+    (observer_lab, {"motion": "b1 = t; vc1 = 2"}, "vc1 is given, and nothing uses it; there are "),
     (observer_lab, {"motion": "b1 = sech(t)"}, "cannot be printed alike in Python and JavaScript"),
     (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
     (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),

@@ -112,7 +112,7 @@ test_what_makes_no_sense_is_refused = refuses(
 
 test_the_figure_refuses_what_is_no_map_or_no_threshold = refuses(
     lambda found: figures.bound_map(found or bound_map(SYSTEM, resolution=3), threshold=0),
-    (1, "a BoundMap is needed"),
+    (1, "expected a BoundMap"),
     (None, "must be positive"),
 )
 

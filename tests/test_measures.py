@@ -224,6 +224,8 @@ def test_the_table_is_shown_as_text_and_in_a_notebook():
     markdown = found._repr_markdown_()
     assert "| (20) as printed | does an instant show anything hidden? | yes |" in markdown
     assert markdown.count("\n| ") == 8
+    largest, printed = found.instant.eigenvalues[:, -1], found["(20) as printed"]
+    assert (printed.value, printed.time) == (largest.min(), found.recording.elapsed[largest.argmin()])
 
 
 def test_lost_samples_show_nothing():
@@ -246,7 +248,7 @@ test_other_requests_that_make_no_sense_are_refused = refuses(
     (lambda: lie_derivatives(BOTH, 10**12), "fewer orders"),
     (lambda: lie_derivatives(BOTH).ranks_at({}), "no values for"),
     (lambda: how_observable(crossing(), SQUARE), "made for no view"),
-    (lambda: figures.observability(3), "an Observability is needed"),
+    (lambda: figures.observability(3), "expected an Observability"),
 )
 
 

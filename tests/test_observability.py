@@ -19,6 +19,7 @@ from percept_obs import (
     sphere,
     windowed,
 )
+from percept_obs.observability.windows import instants
 from percept_obs.system.surfaces import POINT
 
 b1, b2, b3, y1, y2 = sp.symbols("b1 b2 b3 y1 y2", real=True)
@@ -75,6 +76,14 @@ def test_lost_samples_are_interpolated_where_there_is_no_truth():
 def test_windows_that_do_not_fit_are_refused(window):
     with pytest.raises(ValueError, match="must be positive and at most 20 s"):
         windowed(ONE, record(scenarios.ma2005_eq35(), 20), window)
+
+
+def test_a_window_holds_the_integral_of_what_its_instants_show():
+    recording = record(scenarios.ma2005_eq35(), 3, Camera(0.01))
+    whole, at = windowed(BOTH, recording, 3.0), instants(BOTH, recording)
+    assert len(whole.time) == 1
+    for found, shown in ((whole.matrices, at.matrices), (whole.scale, at.scale)):
+        np.testing.assert_allclose(found[0], np.trapezoid(shown, recording.time, axis=0), rtol=1e-9)
 
 
 def test_one_output_has_the_eigenvalues_0_and_what_is_printed():

@@ -202,6 +202,11 @@ test_names_that_would_be_code_or_markup_are_refused_where_they_are_made = refuse
         )
     ),
 )
+test_what_makes_no_gain_and_no_observer_is_refused = refuses(
+    lambda call: call(),
+    (lambda: Gain("k", "k", 1, 0, 1, "1", "text for a symbol"), "symbol is the text 'k'; expected a Symbol"),
+    (lambda: replace(de_luca, derive=lambda form: 1)(ONE), "what it derives is the number 1; expected a Derived"),
+)
 test_parts_that_do_not_fit_together_are_refused = refuses(
     lambda changes: of_parts(**changes),
     ({"start": sp.symbols("wf1 wf2 wf3", real=True)}, "start of the mine observer uses wf1, wf2, wf3, which nothing"),

@@ -72,14 +72,17 @@ def test_depth_errors_have_medians_and_count_what_is_behind_the_camera():
 
 def test_bad_input_is_refused_in_words(recording, run):
     for call, message in (
-        (lambda: figures.image_plane(3), "a Run or a Recording is needed"),
+        (lambda: figures.image_plane(3), "expected a Run or a Recording"),
         (lambda: figures.image_plane(recording.without(0, 9).without(0, 9, 1)), "no point is seen"),
         (lambda: figures.error_norm([]), "a PointsRun or several are needed"),
-        (lambda: figures.error_norm(3), "a PointsRun or several are needed"),
+        (lambda: figures.error_norm(3), "expected a PointsRun or a sequence"),
         (lambda: figures.error_norm(run, ["a", "b"]), "one for each curve"),
         (lambda: figures.error_norm(run, fitted=(9, 10)), "needs two finite positive ones"),
+        (lambda: figures.scene(recording), "a scene is of one point"),
+        (lambda: figures.settings_map(5), "expected an xarray.DataArray"),
+        (lambda: figures.cases(5), "expected a mapping from text to a Run"),
         (lambda: figures.gramian([]), "a Gramian or several are needed"),
-        (lambda: figures.gramian(3), "a Gramian or several are needed"),
+        (lambda: figures.gramian(3), "expected a Gramian or a sequence"),
         (lambda: figures.depth_errors({}, 2), "relative errors"),
         (lambda: figures.depth_errors({"a": []}, 2), "relative errors"),
         (lambda: figures.depth_errors({"a": [np.nan]}, 2), "without NaN"),

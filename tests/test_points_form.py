@@ -127,6 +127,14 @@ def test_whatever_the_motion_is_taken_seriously():
     assert PointsForm(linear(states=4), np.eye(4)[:3]).unseen.shape[1] == 0
 
 
+def test_an_observer_fits_recordings_of_as_many_points_on_the_same_surface():
+    two = independent_points(affine(), 2)
+    assert two.fits(rigid_body(2))
+    assert not two.fits(independent_points(affine(), 3))
+    assert not two.fits(independent_points(affine(), 2, plane((0.1, 0, 1))))
+    assert not two.fits(pinhole())
+
+
 test_wrong_forms_are_refused = refuses(
     lambda C, names: PointsForm(linear(np.eye(3), np.ones(3)), C, names=names),
     (np.eye(4)[:3], (), r"blocks of shape \(3, 4\); the motion has 3 states"),

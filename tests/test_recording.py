@@ -182,3 +182,13 @@ def test_the_grid_of_steps():
     np.testing.assert_allclose(grid, [0, 0.1, 0.1 + 0.25 / 3, 0.1 + 0.5 / 3, 0.35])
     assert index.tolist() == [0, 0, 1, 4]
     np.testing.assert_allclose(instants(np.array([0.0, 1.0, 3.0])), [0, 0.5, 1, 2, 3])
+
+
+def test_a_true_distance_is_the_inverse_of_the_last_coordinate():
+    recording = record(scenarios.ma2005_eq35(), 1)
+    np.testing.assert_allclose(recording.distance, 1 / recording.truth[:, -1])
+    np.testing.assert_allclose(recording.points[:, 2], recording.distance)
+    bare = Recording(recording.time, recording.outputs, ("y1", "y2"), pinhole(), recording.motion)
+    assert bare.points is None
+    with pytest.raises(ValueError, match="no truth to compare with"):
+        _ = bare.distance

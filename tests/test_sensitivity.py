@@ -108,7 +108,7 @@ def test_what_makes_no_sense_is_refused():
         (lambda: sensitivity(RECORDING, observer, ZERO, ("b3",)).change(b1=1.0), "no entry b1; it has b3"),
         (lambda: variation(observer.equations, observer.equations.state[:1]), "no parameter"),
         (lambda: entries(sensitivity(RECORDING, observer, entries=("b3",)), most=0), "draw one at least"),
-        (lambda: entries(RECORDING), "a Sensitivity is needed"),
+        (lambda: entries(RECORDING), "expected a Sensitivity"),
     ):
         with pytest.raises(ValueError, match=message):
             ask()

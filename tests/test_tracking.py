@@ -190,6 +190,13 @@ def test_without_truth_the_verdict_says_so():
         run.error  # noqa: B018
 
 
+def test_the_likelihood_is_that_of_a_normal_innovation():
+    run = track(RECORDING, ekf(ONE, noise_variance=1e-4), ZERO)
+    variance = run.nis[1:] * 1e-8 / run.innovation[1:, 0] ** 2  # S, for the residual is R / S of the innovation
+    density = -(run.nis[1:] + np.log(2 * np.pi * variance)) / 2
+    np.testing.assert_allclose(run.log_likelihood[1:], density, rtol=1e-6)
+
+
 def test_the_claimed_covariance():
     run = track(RECORDING, ekf(ONE), ZERO)
     assert run.covariance.shape == (501, 3, 3)

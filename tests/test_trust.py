@@ -89,7 +89,7 @@ def test_what_makes_no_sense_is_refused():
         (lambda: trust_over_time(run, count=0), "0 times were asked for"),
         (lambda: trust_over_time(run, tolerance=0), "must be positive"),
         (lambda: trust_over_time(track(paused().between(0, 1), FILTER)), "40 are needed"),
-        (lambda: trust(run), "a TrustOverTime is needed"),
+        (lambda: trust(run), "expected a TrustOverTime"),
     ):
         with pytest.raises(ValueError, match=message):
             ask()

@@ -23,7 +23,7 @@ from percept_obs.compile import Array as Array
 from percept_obs.figures.look import GREY, LIGHT, WIDTH
 from percept_obs.recording import Recording
 from percept_obs.tracking.run import Run
-from percept_obs.validation import refuse_kind
+from percept_obs.validation import checked, refuse_kind
 from percept_obs.validation.kinds import with_article
 
 P = ParamSpec("P")
@@ -77,6 +77,7 @@ class Figure:
     axes: tuple[Axes, ...]
     text: str
 
+    @checked
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the picture to a file, in the format that its ending names; the text becomes its description.
 
@@ -111,12 +112,14 @@ def figure(refuses: str) -> Callable[[Callable[P, Drawing]], Callable[P, Figure]
     """
 
     def of(draw: Callable[P, Drawing]) -> Callable[P, Figure]:
+        guarded = checked(draw)
+
         @wraps(draw)
         def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
             axes: list[Axes] = []
 
             def sentences() -> Generator[str]:
-                axes.extend((yield from draw(*args, **kwargs)))
+                axes.extend((yield from guarded(*args, **kwargs)))
 
             text = " ".join(filter(None, sentences()))
             return Figure(whole(axes[0]), tuple(axes), text)
@@ -201,13 +204,6 @@ def legend_above(ax: Axes, centred: bool = False, fitting: int = 80) -> None:
             handle.set(markersize=8, alpha=1)
 
 
-def require(data: Any, kinds: type | tuple[type, ...], source: str) -> None:
-    """Raise a ValueError for data of another kind; the source says what makes one."""
-    if not isinstance(data, kinds):
-        names = [with_article(kind.__name__) for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
-        raise ValueError(f"{' or '.join(names)} is needed, not {data!r}; {source} makes one")
-
-
 def require_several(data: T | Iterable[T], kind: type[T], source: str) -> list[T]:
     """Return one or several of a kind as a list; the source says what makes one."""
     found: list[Any] = list(data) if isinstance(data, Iterable) else [data]
@@ -218,7 +214,6 @@ def require_several(data: T | Iterable[T], kind: type[T], source: str) -> list[T
 
 def recording_and_run(data: Run | Recording) -> tuple[Recording, Run | None]:
     """Return a recording, and the run on it if there is one."""
-    require(data, (Run, Recording), "track() or record()")
     return (data.recording, data) if isinstance(data, Run) else (data, None)
 
 

@@ -117,7 +117,6 @@ def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], sty
 
 def draw_bound(ax: Axes, recording: Recording, bound: Bound, coordinate: str) -> str:
     """Draw the least standard deviation of a coordinate under its errors, and say it."""
-    base.require(bound, Bound, "cramer_rao(recording, system)")
     if not base.equal(bound.recording.truth, recording.truth):
         raise ValueError("the bound is along another truth than the runs; draw runs on the recording of the bound")
     least = bound.of(coordinate)

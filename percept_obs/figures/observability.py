@@ -36,7 +36,6 @@ def observability(found: Observability, axes: Sequence[Axes] | None = None) -> D
     >>> len(figures.observability(found).axes)
     4
     """
-    base.require(found, Observability, "how_observable(recording, system)")
     begun, hidden = found.recording.time[0], found.form.hidden[-1]
     parts = ["an instant", "windows", "derivatives", "the bound"]
     instant, windows, derivatives, bound = rows(axes, [1.4, 1.8, 1.1, 1.8], parts)
@@ -113,7 +112,6 @@ def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -
     >>> print(figures.bound_map(bound_map(forwards, resolution=11)).text.split(". ")[-1])
     The circle |w| = 0.1 around it has the radius 0.2.
     """
-    base.require(found, BoundMap, "bound_map(system)")
     if not threshold > 0:
         raise ValueError(f"the threshold is {threshold}; it must be positive")
     own, system = ax is None, found.system
@@ -256,7 +254,6 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Drawing:
     >>> print(figures.consistency(check_consistency(run, after=5)).text.split(". ")[1])
     Consistent: the innovations are as large as the filter claims
     """
-    base.require(found, Consistency, "check_consistency(run)")
     ax = canvas(ax, 3.2)
     low, high = found.interval(found.samples)
     ax.axhspan(low, high, color=look.GREEN, alpha=0.2, linewidth=0, label=f"{100 * found.confidence:g} % interval")

@@ -57,7 +57,6 @@ def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOL
     distance : In metres.
     runs_over_time : Several observers.
     """
-    base.require(run, Run, "track()")
     names = [symbol.name for symbol in run.view.coordinates]
     known = run.recording.truth is not None
     what = "error" if known else "innovation"

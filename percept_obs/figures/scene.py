@@ -45,6 +45,8 @@ def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Dr
     recording, run = base.recording_and_run(data)
     if recording.points is None and run is None:
         raise ValueError("the recording has no truth, so no place is known; draw the run of an observer on it")
+    if recording.outputs.ndim > 2:
+        raise ValueError("a scene is of one point; image_plane() draws the images of several")
     if not far > 1:
         raise ValueError(f"far is {far}; it must be more than 1")
     if ax is not None and ax.name != "3d":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,6 +16,7 @@ from percept_obs.studies.comparison import summary
 from percept_obs.studies.diagnosis import Diagnosis
 from percept_obs.studies.sensitivity import SHARE, Sensitivity
 from percept_obs.studies.trust import TrustOverTime
+from percept_obs.validation import Kind
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -161,8 +162,11 @@ def chatter(
     return [left, right]
 
 
+Values = Annotated[Any, Kind("an xarray.DataArray", lambda v: hasattr(v, "dims") and hasattr(v, "squeeze"))]
+
+
 @figure("the values do not have exactly two dimensions of several settings")
-def settings_map(values: Any, ax: Axes | None = None) -> Drawing:
+def settings_map(values: Values, ax: Axes | None = None) -> Drawing:
     """A number over two settings; grey where it is infinite or there is none.
 
     Parameters
@@ -230,7 +234,6 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
     >>> print(figures.entries(found, most=1).text.split(". ")[1])
     a32: 9.4 % in the median of the last half
     """
-    base.require(found, Sensitivity, "studies.sensitivity.sensitivity()")
     if most < 1:
         raise ValueError(f"the {most} most important entries were asked for; draw one at least")
     ax = canvas(ax, 3.2)
@@ -268,7 +271,6 @@ def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
     >>> print(figures.trust(trust_over_time(run, count=3)).text.split(". ")[0])
     Estimated depth in metres over 0 to 5 s, with what the samples tell at 3 times
     """
-    base.require(found, TrustOverTime, "studies.trust.trust_over_time(run)")
     ax, run = canvas(ax, 3.2), found.run
     _shade(ax, found)
     sampled, spread = found.distance, 2 * found.deviation
@@ -324,7 +326,6 @@ def scan(found: Diagnosis, ax: Axes | None = None) -> Drawing:
     >>> print(figures.scan(diagnose(replace(seen, motion=motion(0.1)))).text.split(": ")[1])
     time offset. It looks as if the images are 0.099 s early against the motion
     """
-    base.require(found, Diagnosis, "diagnose(recordings)")
     if not found.findings or len(found.findings[0].tried) < 2:
         raise ValueError(f"{found.named} has no values that could be drawn")
     first = found.findings[0]

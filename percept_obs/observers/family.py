@@ -214,6 +214,7 @@ class Family:
         settings |= dict(zip(settings, options, strict=False))
         settings |= {name: chosen.pop(name) for name in settings if name in chosen}
         derived = self.derive(form, **settings)
+        refuse_kind(self.key, "what it derives", derived, Derived)
         gains = derived.gains or self.gains
         x = (*form.x1, *form.x2)
         estimate, covariance = derived.estimate or hats(x), derived.covariance

@@ -66,6 +66,7 @@ class Gain:
     def __post_init__(self) -> None:
         if not str(self.name).isidentifier() or keyword.iskeyword(self.name) or self.name.startswith("_"):
             raise ValueError(f"a gain has the name {self.name!r}; give it a name in Python, such as 'gain'")
+        refuse_kind("the gain", "symbol", self.symbol, sp.Symbol)
         refuse_names([self.symbol], self.name)
         refuse_kind("the gain", self.name, self.value, float)
         value = float(self.value)

@@ -22,7 +22,7 @@ from pkgutil import iter_modules
 
 from percept_obs.papers.entries import Entry, Finding, Known, Verdict
 from percept_obs.papers.ledger import Ledger, page
-from percept_obs.validation import bar, workers
+from percept_obs.validation import bar, checked, workers
 
 __all__ = ["LEDGERS", "Entry", "Finding", "Known", "Ledger", "Verdict", "find", "judge", "page", "report"]
 
@@ -45,6 +45,7 @@ def __getattr__(name: str) -> Ledger:
     raise AttributeError(f"there is no {name!r} among the papers; there are {', '.join(NAMED)}")
 
 
+@checked
 def find(places: Sequence[str | int] = (), paper: str = "") -> tuple[Ledger, ...]:
     """The ledgers of papers, or those of their entries that are asked for.
 
@@ -94,6 +95,7 @@ def find(places: Sequence[str | int] = (), paper: str = "") -> tuple[Ledger, ...
     return tuple(part for part in parts if part.entries)
 
 
+@checked
 def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> bool:
     """Compute verdicts, and tell whether all are the recorded ones.
 
@@ -140,6 +142,7 @@ def _found(task: tuple[int, list[int]]) -> list[dict[str, object]]:
     return [{"agrees": GROUPS[g][k].agrees, "finding": GROUPS[g][k].finding} for k in numbers]
 
 
+@checked
 def report(ledgers: Sequence[Ledger] = LEDGERS) -> str:
     """All entries as tables, with the numbers that verdicts rest on, and how many verdicts are known in which way.
 

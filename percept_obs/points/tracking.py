@@ -135,7 +135,7 @@ def _independent(form: PointsForm, matrix: LyapunovMatrix) -> list[tuple[Indices
     used = (form.blocks != 0).any(axis=1)
     coupled |= used.T @ used
     count, label = connected_components(coupled, directed=False)
-    owner = np.where(used.any(axis=1), label[used.argmax(axis=1)], -1)
+    owner = label[used.argmax(axis=1)]
     return [(np.flatnonzero(label == k), np.flatnonzero(owner == k)) for k in range(count)]
 
 

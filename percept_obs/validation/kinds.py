@@ -22,16 +22,19 @@ LARGEST_FLOAT = 10**308
 EXAMPLES = MappingProxyType(
     {
         "Bound": "cramer_rao(recording, form)",
+        "BoundMap": "bound_map(system)",
         "Camera": "Camera(period=0.01)",
         "Clock": "Clock(zero=0, tick=1e-3)",
         "CanonicalForm": 'PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")',
         "Consistency": "check_consistency(run)",
+        "Diagnosis": "diagnose(recordings)",
         "DepthSource": "GivenDepth()",
         "Family": "ibo",
         "ImagingSurface": "pinhole()",
         "LuenbergerObserver": "luenberger(form)",
         "Motion": "affine(A, b) or rigid(w, v_c, v_p)",
         "Observer": "ibo(form)",
+        "Observability": "how_observable(recording, system)",
         "PartitionedSystem": 'PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")',
         "PerspectiveSystem": "PerspectiveSystem(affine(), pinhole())",
         "PixelCamera": "PixelCamera((720, 720), (320, 240))",
@@ -42,7 +45,9 @@ EXAMPLES = MappingProxyType(
         "Run": "track(recording, ibo(form))",
         "Scenario": "scenarios.ma2005_eq35()",
         "Scene": "scenarios.ma2005_eq35()",
+        "Sensitivity": "sensitivity(recording, observer)",
         "StructureAndMotion": 'StructureAndMotion(("v_c1",))',
+        "TrustOverTime": "trust_over_time(run)",
         "Uniform": "Uniform(0.01)",
     }
 )

@@ -125,7 +125,10 @@ def _read(text: str, blocks: tuple[tuple[str, sp.ImmutableMatrix], ...]) -> Type
     named = {key(letter): block for letter, block in blocks} | {key(s.name): sp.ImmutableMatrix([s]) for s in symbols}
     letters = {key(symbol.name): symbol for symbol in (TIME, *symbols)}
     found: dict[sp.Symbol, sp.Expr] = {}
-    for reading in read(_branches(text), letters, list(named), {"step": _step}).lines:
+    said = read(_branches(text), letters, list(named), {"step": _step})
+    if unused := [each.name for each in said.definitions if not each.used]:
+        raise ValueError(f"{unused[0]} is given, and nothing uses it; there are {', '.join([*named])}")
+    for reading in said.lines:
         block = named.get(reading.name)
         if block is None:
             raise ValueError(
