@@ -7,7 +7,6 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from decimal import Decimal
 from pathlib import Path
 from types import MappingProxyType
 
@@ -119,7 +118,7 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
     folder : path
         With cameras.txt, images.txt and points3D.txt, as ``colmap model_converter --output_type TXT`` writes them.
     rate : float, optional
-        Images a second; the last number in an image's name counts them, or their order if there is no number in one.
+        Images a second; the last number in an image's name counts them, or else their order.
     clock : Clock
         Without a rate the last number in an image's name is its time, by this clock: ``Clock(tick=1e-9)`` for EuRoC.
 
@@ -158,7 +157,9 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
         if len(bodies) != len(heads) or not all(names) or len(heads) < 2:
             raise ValueError(f"{len(heads)} images, with {len(bodies)} rows of points; expected two images, and names")
         if len(used) > 1:
-            raise ValueError(f"{len(used)} cameras, {', '.join(sorted(used))}; a recording is of one")
+            raise ValueError(
+                f"{len(used)} cameras, {', '.join(sorted(used))}; a recording is of one: make it with a single one"
+            )
         (model, width, height, *parameters) = lenses[min(used)]
         if model not in MODELS:
             raise ValueError(f"a camera of the model {model}, none of {', '.join(MODELS)}: undistort the images")
@@ -196,14 +197,14 @@ def _rows(file: Path, blank: bool = False) -> Iterator[list[str]]:
 def _times(names: Sequence[str], rate: float | None, clock: Clock) -> Array:
     """Seconds of images, by the last number in their names or by their order."""
     found = [re.findall(r"\d+(?:\.\d+)?", Path(name).stem)[-1:] for name in names]
-    if rate is None:
-        if not all(found):
-            raise ValueError(f"the image {names[found.index([])]!r} without a number for its time; give its rate")
-        time = clock.seconds([number for (number,) in found])
-    elif all(found):
-        time = np.array([float(Decimal(number)) for (number,) in found]) / rate
-    else:
-        time = np.argsort(np.argsort(names)) / rate
+    if rate is not None:
+        count = np.array([float(number) for each in found for number in each])
+        if len(set(count)) < len(names):
+            count = np.argsort(np.argsort(names)).astype(float)
+        return np.asarray((count - count.min()) / rate)
+    if not all(found):
+        raise ValueError(f"the image {names[found.index([])]!r} without a number for its time; give its rate")
+    time = clock.seconds([number for (number,) in found])
     if len(set(time.tolist())) < len(time):
         raise ValueError(f"images with the same time, among {', '.join(names[:3])}; give a rate")
-    return time - time.min() if rate else time
+    return time

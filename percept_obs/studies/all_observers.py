@@ -222,8 +222,9 @@ def all_observers(
         inverse = first.imaging_surface.inverse_distance.name
         start = {inverse: 1 / (2 * float(np.median(distances)))} if len(distances) else {}
     tried = dict({make: make.candidates for make in OBSERVERS} if candidates is None else candidates)
-    steps = sum(len(each.time) for each in choosing) * max(map(len, tried.values()), default=0)
-    settings = {"language": choose(None, len(STARTS) * MOST * steps if blind else steps)} | settings
+    samples, others = (sum(len(each.time) for each in half) for half in (choosing, reporting))
+    most = max([*map(len, tried.values()), len(STARTS) * MOST * blind])
+    settings = {"language": choose(None, samples * most + others)} | settings
 
     def follow(recording: Recording, observer: Observer) -> Run:
         return track(recording, observer, start, **settings)
