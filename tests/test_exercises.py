@@ -135,7 +135,7 @@ def test_gains_reach_what_is_asked_for(time, right):
     attempt = reach(5, lambda gain: {"time": time, "error": 0.1, "more": 9.0}, time=2, error=0.2)
     assert attempt.right is right
     assert f"time {time:.3g} (2 is allowed)" in str(attempt)
-    with pytest.raises(ValueError, match="gives no rms; it gives error"):
+    with pytest.raises(ValueError, match="gives no number rms; it gives error"):
         reach(5, lambda gain: {"error": 1.0}, rms=2)
 
 
