@@ -1,4 +1,4 @@
-"""Recordings of a camera that a hand carries, clean ones and ones with a mistake, on which `diagnose` is measured."""
+"""Recordings of a camera that a hand carries, clean ones and ones with mistakes, on which `diagnose` is measured."""
 
 import warnings
 from collections import Counter
@@ -7,18 +7,24 @@ from dataclasses import replace
 import numpy as np
 from distrust_study import REST, waves
 
-from percept_obs import Camera, Gaussian, Scenario, diagnose, pinhole, record, rigid
-from percept_obs.studies.diagnosis.experiments import FRAMES, later, turned
+from percept_obs import Camera, Gaussian, Scenario, diagnose, pinhole, record, rigid, scenarios
+from percept_obs.studies.diagnosis.tracks import SPINS
+from percept_obs.system.motion import Motion
+from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera
 
-FAULTS = (
-    *("time offset", "focal length", "sign of w", "frames swapped"),
-    *("pixels", "distortion ignored", "mismatch"),
-)
+FRAMES = [np.array(rows) for rows in (
+    [[0, -1, 0], [0, 0, -1], [1, 0, 0]], [[0, 0, 1], [-1, 0, 0], [0, -1, 0]], [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
+)]
+
+MOTION_FAULTS = ("time offset", "sign of w", "sign of v", "frames swapped", "gyro bias", "scale drift")
+IMAGE_FAULTS = ("focal length", "distortion ignored", "flipped axis", "rolling shutter", "mismatch", "outliers")
+FAULTS = (*MOTION_FAULTS, *IMAGE_FAULTS, "pixels")
+ORDER = ("rolling shutter", "mismatch", "distortion ignored", "focal length", "flipped axis", "outliers", "pixels", *MOTION_FAULTS)
 
 
 def drawn(seed, points=5):
-    """Recordings of several points by one camera, and numbers to go on with."""
+    """Recordings of several points by one camera, with the signal, and numbers to go on with."""
     draw = np.random.default_rng(seed)
     motion = rigid(waves(draw, draw.uniform(0.1, 0.3)), waves(draw, draw.uniform(0.3, 0.6)), REST)
     duration, camera = draw.uniform(6, 10), Camera(draw.choice([0.04, 0.05]), Gaussian(10 ** draw.uniform(-3, -2.5)))
@@ -32,45 +38,147 @@ def drawn(seed, points=5):
         except BehindCamera:
             continue
         if np.abs(recording.truth[:, :2]).max() < 1.2:
-            found.append(replace(recording, truth=None, signal=None))
+            found.append(recording)
     return found, draw
 
 
-def spoiled(recordings, fault, draw):
-    """The recordings as somebody brings them who made one mistake."""
+def believed(motion, change):
+    """The motion with its rates changed: a function of times, of A and of b, shapes (T, 3, 3) and (T, 3)."""
+    from percept_obs.recording.simulation import coefficients
+
+    def rows(times):
+        known = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters)))
+        A, b = change(times, *coefficients(motion, known))
+        return np.hstack([np.broadcast_to(A, (len(times), 3, 3)).reshape(-1, 9), np.broadcast_to(b, (len(times), 3))])
+
+    entries = affine_symbols()
+    return Motion("believed", entries.A, entries.b, entries.parameters, Signal(OverTime(rows)))
+
+
+def affine_symbols():
+    from percept_obs import affine
+
+    return affine()
+
+
+def spoiled(recordings, faults, draw):
+    """The recordings as somebody brings them who made some mistakes, those of the images first."""
+    for fault in sorted(faults, key=ORDER.index):
+        recordings = _spoiled(recordings, fault, draw)
+    return [replace(each, signal=None, truth=None) for each in recordings]
+
+
+def _spoiled(recordings, fault, draw):
     motion, sign = recordings[0].motion, draw.choice([-1, 1])
+    last = float(recordings[0].time[-1])
+    change = None
     if fault == "time offset":
-        wrong = later(motion, sign * draw.uniform(0.05, 0.2))
+        late = sign * draw.uniform(0.03, 0.2)
+        early = motion
+
+        def shifted(times, A, b):
+            from percept_obs.recording.simulation import coefficients
+
+            return coefficients(early, np.broadcast_to(early.known(times + late), (len(times), len(early.parameters))))
+
+        change = shifted
     elif fault == "sign of w":
-        wrong = replace(motion, A=motion.A.T)
+        change = lambda t, A, b: (np.swapaxes(A, 1, 2), b)
+    elif fault == "sign of v":
+        change = lambda t, A, b: (A, -b)
     elif fault == "frames swapped":
-        wrong = turned(motion, [*FRAMES.values()][draw.integers(len(FRAMES))].T)
-    else:
-        wrong = motion
-    bend = sign * draw.uniform(0.1, 0.3)
-    change = {
-        "focal length": lambda y: y * (1 + 0.12 * sign),
+        into = FRAMES[draw.integers(len(FRAMES))].T
+        change = lambda t, A, b: (into @ A @ into.T, b @ into.T)
+    elif fault == "gyro bias":
+        bias = draw.normal(size=3)
+        bias *= draw.uniform(0.01, 0.05) / np.linalg.norm(bias)
+        change = lambda t, A, b: (A - np.tensordot(bias, SPINS, 1), b)
+    elif fault == "scale drift":
+        rise = draw.uniform(0.15, 0.4)
+        change = lambda t, A, b: (A, b * (1 + rise * t / last)[:, None])
+    wrong = motion if change is None else believed(motion, change)
+    bend, ratio, axis = sign * draw.uniform(0.1, 0.3), 1 + sign * draw.uniform(0.03, 0.15), draw.integers(2)
+    readout = sign * draw.uniform(0.015, 0.03)
+    image = {
+        "focal length": lambda y: y * ratio,
         "pixels": lambda y: 500 * y + (320, 240),
         "distortion ignored": lambda y: y * (1 + bend * (y**2).sum(axis=-1, keepdims=True)),
+        "flipped axis": lambda y: y * (1 - 2 * (np.arange(2) == axis)),
     }.get(fault, lambda y: y)
-    found = [replace(recording, motion=wrong, outputs=change(recording.outputs)) for recording in recordings]
+    found = [replace(each, motion=wrong, outputs=image(each.outputs)) for each in recordings]
+    if fault == "rolling shutter":
+        for k, each in enumerate(recordings):
+            clean, rows = each.signal(each.time), each.signal(each.time)[:, 1]
+            inside = np.clip(each.time + readout * rows, 0, last)
+            moved = np.stack([each.signal(np.sort(inside))[np.argsort(np.argsort(inside))]])[0]
+            found[k] = replace(found[k], outputs=each.outputs - clean + moved)
     if fault == "mismatch":
         one, other = draw.choice(len(found), 2, replace=False)
-        outputs, place = found[one].outputs.copy(), int(len(found[one].time) * draw.uniform(0.2, 0.8))
-        outputs[place:] = found[other].outputs[place:]
+        outputs, count = found[one].outputs.copy(), len(found[one].time)
+        begin = int(count * draw.uniform(0.2, 0.6))
+        end = draw.choice([count, begin + int(count * draw.uniform(0.2, 0.33))])
+        outputs[begin:end] = found[other].outputs[begin:end]
         found[one] = replace(found[one], outputs=outputs)
+    if fault == "outliers":
+        for k, each in enumerate(found):
+            outputs, wild = each.outputs.copy(), draw.random(len(each.time)) < draw.uniform(0.02, 0.08)
+            outputs[wild] += draw.normal(size=(wild.sum(), 2)) * 0.3
+            found[k] = replace(each, outputs=outputs)
     return found
 
 
-def named(fault, seed):
-    """Key of the mistake that is named first; the fault "nothing" leaves the recordings as they are."""
-    recordings, draw = drawn(seed)
+def clean(seed):
+    """A clean recording or several: of a known scenario, or of a camera that only shifts, only turns or is at rest."""
+    draw = np.random.default_rng([seed, 1])
+    noise = Camera(draw.choice([0.04, 0.05, 0.1]), Gaussian(draw.choice([0.0, 1e-3, 3e-3, 1e-2])))
+    kinds = (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar, scenarios.drive, "hand", "shift", "turn", "rest")
+    kind = kinds[seed % len(kinds)]
+    told = bool(draw.integers(2))
+    while True:
+        duration = draw.uniform(2, 80 if seed % 3 else 10)
+        try:
+            if callable(kind):
+                scene = kind()
+                found = [record(scene, min(duration, scene.duration), noise, seed)]
+            else:
+                turning, velocity = waves(draw, draw.uniform(0.05, 0.3)), waves(draw, draw.uniform(0.1, 0.6))
+                if kind in ("shift", "rest"):
+                    turning = REST
+                if kind in ("turn", "rest"):
+                    velocity = REST
+                motion = rigid(turning, velocity, REST)
+                found = []
+                for number in range(draw.integers(1, 7)):
+                    place = draw.uniform(2, 8) * np.array([*draw.uniform(-0.4, 0.4, 2), 1.0])
+                    scene = Scenario(kind, motion, place, min(duration, 40), pinhole())
+                    found.append(record(scene, None, noise, seed + 1000 * number))
+                if max(np.abs(each.truth[:, :2]).max() for each in found) > 1.5:
+                    continue
+        except BehindCamera:
+            continue
+        return [replace(each, truth=None, noise_variance=each.noise_variance if told else None) for each in found]
+
+
+def diagnosed(recordings):
+    """The diagnosis without warnings."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return diagnose(spoiled(recordings, fault, draw)).named
+        return diagnose(recordings)
 
 
-def figures(count, clean):
-    """Counts of the keys that are named first, by the mistake that was made."""
-    found = {fault: Counter(named(fault, seed) for seed in range(count)) for fault in FAULTS}
-    return found | {"nothing": Counter(named("nothing", 1000 + seed) for seed in range(clean))}
+def alone(fault, seed):
+    """The key named first where one mistake was made; "cannot tell" if the diagnosis says so of it."""
+    recordings, draw = drawn(seed)
+    found = diagnosed(spoiled(recordings, [fault], draw))
+    rightly = fault in found.not_told or any(fault in each.instead for each in found.findings)
+    return "cannot tell" if found.named != fault and rightly else found.named
+
+
+PAIRS = [(a, b) for k, a in enumerate(FAULTS[:-1]) for b in FAULTS[k + 1 : -1]]
+
+
+def together(seed):
+    """Two mistakes that were made, and the diagnosis."""
+    recordings, draw = drawn(seed)
+    pair = PAIRS[draw.integers(len(PAIRS))]
+    return pair, diagnosed(spoiled(recordings, pair, draw))

@@ -6,7 +6,7 @@ from percept_obs.figures.observability import bound_map, consistency, excitation
 from percept_obs.figures.runs import distance, runs_over_time, signals
 from percept_obs.figures.scene import scene, velocities
 from percept_obs.figures.structure import cases, depth_errors, error_norm, quantities
-from percept_obs.figures.studies import chatter, comparison, entries, scan, settings_map, trust
+from percept_obs.figures.studies import chatter, comparison, causes, entries, settings_map, trust
 
 __all__ = [
     "Figure",
@@ -26,7 +26,7 @@ __all__ = [
     "observability",
     "quantities",
     "runs_over_time",
-    "scan",
+    "causes",
     "scene",
     "settings_map",
     "signals",

@@ -1,0 +1,272 @@
+"""Tracks of points as a camera with some mistakes would see them, and how that depends on the mistakes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from itertools import accumulate
+from typing import TYPE_CHECKING
+
+import numpy as np
+import sympy as sp
+
+from percept_obs.compile import Array, Flags, Indices, vectorised
+from percept_obs.recording import Recording
+from percept_obs.recording.many import transitions
+from percept_obs.recording.simulation import coefficients
+from percept_obs.studies.diagnosis.causes import CAUSES, LARGEST_OFFSET, MIX_UPS
+from percept_obs.system.motion import Motion
+from percept_obs.system.surfaces import POINT, ImagingSurface
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicHermiteSpline
+
+MOST_SAMPLES = 300
+"""Samples of a track at most, evenly spread."""
+
+OFFSET, FOCAL, BEND, BIAS, DRIFT, SHUTTER = CAUSES
+
+REACH = 1.5 * LARGEST_OFFSET
+"""Seconds before and after a track for which the motion is needed at most."""
+
+LONGEST = 0.05
+"""Longest step in seconds by which the motion is integrated; there are at most `MOST_STEPS`."""
+
+MOST_STEPS = 2000
+
+SPIKE = 8.0
+"""Standard deviations by which a sample that is left out at first differs from the median of its neighbours."""
+
+SMOOTH = 5e-3
+"""Difference from the median of neighbours, in focal lengths, that a turn of the track explains."""
+
+REWEIGHTED = 3
+"""Times that linear equations for a point are solved, each time with the weights of the last."""
+
+FAR = 1e3
+"""Image coordinate that stands for an infinite one."""
+
+SPINS = np.cross(np.eye(3)[:, None], np.eye(3)[None], axis=-1).transpose(0, 2, 1)
+"""Matrices of the cross products with the three axes, shape (3, 3, 3)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Samples of one point: all image coordinates of the surface, shape (K, m), and which of them are used."""
+
+    time: Array
+    outputs: Array
+    used: Flags
+    sampled: Array
+    surface: ImagingSurface
+    motion: Motion
+
+    @property
+    def count(self) -> int:
+        """Number of values that are used."""
+        return int(self.used.sum())
+
+    @cached_property
+    def whole(self) -> Indices:
+        """Samples with all coordinates."""
+        return np.flatnonzero(self.used.all(axis=1))
+
+    def parted(self, inside: Flags) -> tuple[Track, Track]:
+        """Return the track outside of some samples, and inside."""
+        outside, within = (
+            replace(self, used=self.used & flags[:, None], sampled=np.where(flags[:, None], self.sampled, np.nan))
+            for flags in (~inside, inside)
+        )
+        return outside, within
+
+    @cached_property
+    def rows(self) -> Array:
+        """Vertical place in the image of each sample, by which a rolling shutter is late; 0 where it is not known."""
+        return np.nan_to_num(self.outputs[:, 1]) if self.outputs.shape[1] > 1 else np.zeros(len(self.time))
+
+
+def track_of(recording: Recording) -> Track:
+    """Track of a recording where its motion is known at all offsets that are tried, without its spikes."""
+    surface, time = recording.imaging_surface, recording.time
+    known = recording.motion.signal.times if recording.motion.signal else None
+    inside = np.ones(len(time), dtype=bool)
+    if known is not None:
+        inside = (time >= known[0] + LARGEST_OFFSET) & (time <= known[-1] - LARGEST_OFFSET)
+    names = [symbol.name for symbol in surface.image_coordinates]
+    outputs = np.full((len(time), len(names)), np.nan)
+    outputs[:, [names.index(name) for name in recording.names]] = recording.outputs
+    used = np.isfinite(outputs) & ~spikes(outputs) & inside[:, None]
+    there = np.flatnonzero(inside)
+    chosen = there[np.unique(np.linspace(0, len(there) - 1, min(MOST_SAMPLES, len(there))).round().astype(int))]
+    return Track(time[chosen], outputs[chosen], used[chosen], outputs[chosen], surface, recording.motion)
+
+
+def spikes(outputs: Array) -> Flags:
+    """Samples that differ from the median of five neighbours by far more than the others do, shape (K, m)."""
+    padded = np.pad(outputs, ((2, 2), (0, 0)), constant_values=np.nan)
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 5, axis=0)
+    with np.errstate(all="ignore"):
+        apart = np.abs(outputs - np.ma.median(np.ma.masked_invalid(windows), axis=-1).filled(np.nan))
+        apart = np.nan_to_num(apart)
+        deviation = np.array([np.median(column[column > 0]) if (column > 0).any() else 0 for column in apart.T])
+    return np.asarray((apart > SPIKE * 1.5 * deviation + SMOOTH).any(axis=1, keepdims=True) & np.isfinite(outputs))
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Maps of (X, 1) from the first of some times to each of them, shape (N, 4, 4), with A and b then."""
+
+    times: Array
+    maps: Array
+    A: Array
+    b: Array
+
+    @cached_property
+    def spline(self) -> CubicHermiteSpline:
+        """Maps of (X, 1) to X at any time, shape (..., 3, 4)."""
+        from scipy.interpolate import CubicHermiteSpline
+
+        rates = self.A @ self.maps[:, :3]
+        rates[:, :, 3] += self.b
+        return CubicHermiteSpline(self.times, self.maps[:, :3], rates)
+
+    @cached_property
+    def back(self) -> Array:
+        """Inverse maps."""
+        return np.linalg.inv(self.maps)
+
+    def change(self, times: Array, rates: Array) -> Array:
+        """Changes of a position at some times, shape (K, 3, q), by additional rates at the nodes, shape (N, 3, q)."""
+        from scipy.integrate import cumulative_trapezoid
+        from scipy.interpolate import make_interp_spline
+
+        total = cumulative_trapezoid(self.back[:, :, :3] @ rates, self.times, axis=0, initial=0)
+        return np.asarray(make_interp_spline(self.times, self.maps[:, :3] @ total, k=1)(times))
+
+
+@lru_cache(maxsize=256)
+def _known(motion: Motion, begin: float, end: float) -> tuple[Array, Array, Array, Array, Array]:
+    """Times from begin to end, A and b then, and at the two Gauss points of each step."""
+    count = min(max(8, math.ceil((end - begin) / LONGEST)), MOST_STEPS)
+    times = np.linspace(begin, end, count + 1)
+    gauss = (times[:-1, None] + (end - begin) / count * (0.5 + np.array([-1, 1]) / math.sqrt(12))).ravel()
+    rows = motion.known(np.concatenate([times, gauss]))
+    A, b = coefficients(motion, np.broadcast_to(rows, (len(times) + len(gauss), rows.shape[1])))
+    return times, A[: count + 1], b[: count + 1], A[count + 1 :], b[count + 1 :]
+
+
+@lru_cache(maxsize=256)
+def path(motion: Motion, begin: float, end: float, mix_up: str, bias: tuple[float, ...], drift: float) -> Path:
+    """Path under a motion without a mix-up, a bias and a drift, of fourth order in the step (Magnus)."""
+    times, A, b, A_gauss, b_gauss = _known(motion, begin, end)
+    change, step = MIX_UPS[mix_up][2], times[1] - times[0]
+    gauss = (times[:-1, None] + step * (0.5 + np.array([-1, 1]) / math.sqrt(12))).ravel()
+    turning = np.tensordot(bias, SPINS, axes=1)
+    (A, b), (A_gauss, b_gauss) = change(A + turning, b), change(A_gauss + turning, b_gauss)
+    b, b_gauss = (rows * np.exp(-drift * (at - begin))[:, None] for rows, at in ((b, times), (b_gauss, gauss)))
+    A1, A2, b1, b2 = A_gauss[::2], A_gauss[1::2], b_gauss[::2], b_gauss[1::2]
+    twist = math.sqrt(3) / 12 * step**2
+    A_step = step / 2 * (A1 + A2) + twist * (A2 @ A1 - A1 @ A2)
+    b_step = step / 2 * (b1 + b2) + twist * (A2 @ b1[:, :, None] - A1 @ b2[:, :, None])[:, :, 0]
+    steps = np.broadcast_to(np.eye(4), (len(A1), 4, 4)).copy()
+    steps[:, :3] = transitions(A_step, b_step, 1.0)
+    maps = np.stack(list(accumulate(steps, lambda before, step: step @ before, initial=np.eye(4))))
+    return Path(times, maps, A, b)
+
+
+@lru_cache(maxsize=16)
+def _image(surface: ImagingSurface) -> Callable[..., list[Array]]:
+    """Image of a point with its Jacobian as a numpy function."""
+    image = sp.Matrix(surface.image)
+    return vectorised(POINT, (*image, *image.jacobian(POINT)), surface.values)
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """Image coordinates of a track, shape (K, m), with their derivatives by the point and by each cause."""
+
+    outputs: Array
+    by_point: Array
+    by_cause: Mapping[str, Array]
+
+
+def seen(track: Track, point: Array, mix_up: str, wrong: Mapping[str, Array], asked: Sequence[str] = ()) -> Seen:
+    """Images of a point, given by its position (X, 1) at the beginning but for a factor, under wrong numbers.
+
+    Derivatives are those by the point, shape (K, m, 4), and by the causes that are asked for, shape (K, m, q).
+    """
+    number = numbers_of(wrong)
+    late, row, more, bend = (float(number[key][0]) for key in (OFFSET, SHUTTER, FOCAL, BEND))
+    way = path_of(track, mix_up, number)
+    times = np.clip(track.time - late + row * track.rows, way.times[0], way.times[-1])
+    m, count, maps = track.outputs.shape[1], len(times), way.spline(times)
+    with np.errstate(all="ignore"):
+        values = np.stack(_image(track.surface)(*(maps @ point).T), axis=-1)
+    values = np.nan_to_num(values, nan=FAR, posinf=FAR, neginf=-FAR)
+    y, by_position = values[:, :m], values[:, m:].reshape(count, m, 3)
+    square = (y**2).sum(axis=1)[:, None]
+    bent = y * (1 + bend * square)
+    lens = (1 + bend * square)[:, :, None] * np.eye(m) + 2 * bend * y[:, :, None] * y[:, None, :]
+    by_position = (1 + more) * lens @ by_position
+    found = {FOCAL: bent[:, :, None], BEND: ((1 + more) * y * square)[:, :, None]}
+    if OFFSET in asked or SHUTTER in asked:
+        moved = by_position @ (way.spline(times, 1) @ point)[:, :, None]
+        found |= {OFFSET: -moved, SHUTTER: moved * track.rows[:, None, None]}
+    if BIAS in asked or DRIFT in asked:
+        spins, _ = MIX_UPS[mix_up][2](SPINS, np.zeros((3, 3)))
+        turned = np.einsum("aij,nj->nia", spins, way.maps[:, :3] @ point)
+        shifted = -point[3] * (way.times - way.times[0])[:, None] * way.b
+        changes = way.change(times, np.concatenate([turned, shifted[:, :, None]], axis=2))
+        found |= {BIAS: by_position @ changes[:, :, :3], DRIFT: by_position @ changes[:, :, 3:]}
+    return Seen((1 + more) * bent, by_position @ maps, {key: found[key] for key in asked})
+
+
+def numbers_of(wrong: Mapping[str, Array]) -> dict[str, Array]:
+    """All wrong numbers, 0 where there is none."""
+    return {key: wrong.get(key, np.zeros(cause.size)) for key, cause in CAUSES.items()}
+
+
+def path_of(track: Track, mix_up: str, number: Mapping[str, Array]) -> Path:
+    """Path of a track without a mix-up, and without the wrong numbers of the motion."""
+    known = track.motion.signal.times if track.motion.signal else None
+    begin, end = track.time[0] - REACH, track.time[-1] + REACH
+    if known is not None:
+        begin, end = max(begin, known[0]), min(end, known[-1])
+    return path(track.motion, float(begin), float(end), mix_up, tuple(number[BIAS].tolist()), float(number[DRIFT][0]))
+
+
+def guess(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> tuple[Array, Array]:
+    """Position (X, 1) at the beginning, but for a factor, that explains a track nearly, and three directions to change it.
+
+    A sample's ray and the position are parallel, so that their cross product is 0 (the direct linear transform).
+    The directions, shape (4, 3), are those of its singular vectors, so that a fit is well conditioned.
+    """
+    surface, rows, number = track.surface, track.whole, numbers_of(wrong)
+    way = path_of(track, mix_up, number)
+    ray = vectorised(surface.image_coordinates, surface.ray, surface.values)
+    if len(rows) >= 3:
+        times = np.clip(track.time[rows] - float(number[OFFSET][0]), way.times[0], way.times[-1])
+        rays = np.stack(ray(*(track.outputs[rows] / (1 + float(number[FOCAL][0]))).T), axis=-1)
+        rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+        maps, weight = way.spline(times), np.ones(len(rows))
+        across = np.cross(rays[:, :, None], maps, axis=1)
+        for _ in range(REWEIGHTED):  # by the distance of each position, so that angles are left and not lengths
+            vectors = np.linalg.svd((across / weight[:, None, None]).reshape(-1, 4), full_matrices=False)[2]
+            along = np.einsum("ki,kij,j->k", rays, maps, vectors[-1])
+            weight = np.maximum(np.abs(along), 1e-6 * max(float(np.abs(along).max()), 1e-6))
+        point = vectors[-1] * np.sign(np.median(along))
+        if point[3] > 0 and np.median(np.abs(along)) > 1e-6:
+            return point, vectors[:3].T
+    first = [np.flatnonzero(column) for column in track.used.T]
+    image = [track.outputs[rows[0], k] if len(rows) else 0.0 for k, rows in enumerate(first)]
+    point = np.append(np.array(ray(*image), dtype=float), 0.0)
+    return point, across_of(point, 4)
+
+
+def across_of(point: Array, unknowns: int) -> Array:
+    """Directions across a vector, among its first entries, shape (4, unknowns - 1)."""
+    found = np.zeros((4, unknowns - 1))
+    found[:unknowns] = np.linalg.svd(point[None, :unknowns])[2][1:].T
+    return found
