@@ -1,26 +1,40 @@
 """Recordings of a camera that a hand carries, clean ones and ones with mistakes, on which `diagnose` is measured."""
 
 import warnings
-from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 from distrust_study import REST, waves
 
-from percept_obs import Camera, Gaussian, Scenario, diagnose, pinhole, record, rigid, scenarios
+from percept_obs import Camera, Gaussian, Scenario, affine, diagnose, pinhole, record, rigid, scenarios
+from percept_obs.recording.simulation import coefficients
 from percept_obs.studies.diagnosis.tracks import SPINS
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera
 
-FRAMES = [np.array(rows) for rows in (
-    [[0, -1, 0], [0, 0, -1], [1, 0, 0]], [[0, 0, 1], [-1, 0, 0], [0, -1, 0]], [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
-)]
+FRAMES = [
+    np.array(rows)
+    for rows in (
+        [[0, -1, 0], [0, 0, -1], [1, 0, 0]],
+        [[0, 0, 1], [-1, 0, 0], [0, -1, 0]],
+        [[1, 0, 0], [0, -1, 0], [0, 0, -1]],
+    )
+]
 
 MOTION_FAULTS = ("time offset", "sign of w", "sign of v", "frames swapped", "gyro bias", "scale drift")
 IMAGE_FAULTS = ("focal length", "distortion ignored", "flipped axis", "rolling shutter", "mismatch", "outliers")
 FAULTS = (*MOTION_FAULTS, *IMAGE_FAULTS, "pixels")
-ORDER = ("rolling shutter", "mismatch", "distortion ignored", "focal length", "flipped axis", "outliers", "pixels", *MOTION_FAULTS)
+ORDER = (
+    "rolling shutter",
+    "mismatch",
+    "distortion ignored",
+    "focal length",
+    "flipped axis",
+    "outliers",
+    "pixels",
+    *MOTION_FAULTS,
+)
 
 
 def drawn(seed, points=5):
@@ -44,21 +58,18 @@ def drawn(seed, points=5):
 
 def believed(motion, change):
     """The motion with its rates changed: a function of times, of A and of b, shapes (T, 3, 3) and (T, 3)."""
-    from percept_obs.recording.simulation import coefficients
 
     def rows(times):
-        known = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters)))
-        A, b = change(times, *coefficients(motion, known))
-        return np.hstack([np.broadcast_to(A, (len(times), 3, 3)).reshape(-1, 9), np.broadcast_to(b, (len(times), 3))])
+        A, b = change(times, *rates(motion, times))
+        return np.hstack([A.reshape(-1, 9), b])
 
-    entries = affine_symbols()
+    entries = affine()
     return Motion("believed", entries.A, entries.b, entries.parameters, Signal(OverTime(rows)))
 
 
-def affine_symbols():
-    from percept_obs import affine
-
-    return affine()
+def rates(motion, times):
+    """A and b of a motion at times."""
+    return coefficients(motion, np.broadcast_to(motion.known(times), (len(times), len(motion.parameters))))
 
 
 def spoiled(recordings, faults, draw):
@@ -71,32 +82,18 @@ def spoiled(recordings, faults, draw):
 def _spoiled(recordings, fault, draw):
     motion, sign = recordings[0].motion, draw.choice([-1, 1])
     last = float(recordings[0].time[-1])
-    change = None
-    if fault == "time offset":
-        late = sign * draw.uniform(0.03, 0.2)
-        early = motion
-
-        def shifted(times, A, b):
-            from percept_obs.recording.simulation import coefficients
-
-            return coefficients(early, np.broadcast_to(early.known(times + late), (len(times), len(early.parameters))))
-
-        change = shifted
-    elif fault == "sign of w":
-        change = lambda t, A, b: (np.swapaxes(A, 1, 2), b)
-    elif fault == "sign of v":
-        change = lambda t, A, b: (A, -b)
-    elif fault == "frames swapped":
-        into = FRAMES[draw.integers(len(FRAMES))].T
-        change = lambda t, A, b: (into @ A @ into.T, b @ into.T)
-    elif fault == "gyro bias":
-        bias = draw.normal(size=3)
-        bias *= draw.uniform(0.01, 0.05) / np.linalg.norm(bias)
-        change = lambda t, A, b: (A - np.tensordot(bias, SPINS, 1), b)
-    elif fault == "scale drift":
-        rise = draw.uniform(0.15, 0.4)
-        change = lambda t, A, b: (A, b * (1 + rise * t / last)[:, None])
-    wrong = motion if change is None else believed(motion, change)
+    late, rise, into = sign * draw.uniform(0.03, 0.2), draw.uniform(0.15, 0.4), FRAMES[draw.integers(len(FRAMES))].T
+    bias = draw.normal(size=3)
+    bias *= draw.uniform(0.01, 0.05) / np.linalg.norm(bias)
+    changes = {
+        "time offset": lambda t, A, b: rates(motion, t + late),
+        "sign of w": lambda t, A, b: (np.swapaxes(A, 1, 2), b),
+        "sign of v": lambda t, A, b: (A, -b),
+        "frames swapped": lambda t, A, b: (into @ A @ into.T, b @ into.T),
+        "gyro bias": lambda t, A, b: (A - np.tensordot(bias, SPINS, 1), b),
+        "scale drift": lambda t, A, b: (A, b * (1 + rise * t / last)[:, None]),
+    }
+    wrong = believed(motion, changes[fault]) if fault in changes else motion
     bend, ratio, axis = sign * draw.uniform(0.1, 0.3), 1 + sign * draw.uniform(0.03, 0.15), draw.integers(2)
     readout = sign * draw.uniform(0.015, 0.03)
     image = {
@@ -110,7 +107,7 @@ def _spoiled(recordings, fault, draw):
         for k, each in enumerate(recordings):
             clean, rows = each.signal(each.time), each.signal(each.time)[:, 1]
             inside = np.clip(each.time + readout * rows, 0, last)
-            moved = np.stack([each.signal(np.sort(inside))[np.argsort(np.argsort(inside))]])[0]
+            moved = each.signal(np.sort(inside))[np.argsort(np.argsort(inside))]
             found[k] = replace(found[k], outputs=each.outputs - clean + moved)
     if fault == "mismatch":
         one, other = draw.choice(len(found), 2, replace=False)
@@ -131,7 +128,16 @@ def clean(seed):
     """A clean recording or several: of a known scenario, or of a camera that only shifts, only turns or is at rest."""
     draw = np.random.default_rng([seed, 1])
     noise = Camera(draw.choice([0.04, 0.05, 0.1]), Gaussian(draw.choice([0.0, 1e-3, 3e-3, 1e-2])))
-    kinds = (scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar, scenarios.drive, "hand", "shift", "turn", "rest")
+    kinds = (
+        scenarios.ma2005_eq35,
+        scenarios.ma2005_eq36,
+        scenarios.planar,
+        scenarios.drive,
+        "hand",
+        "shift",
+        "turn",
+        "rest",
+    )
     kind = kinds[seed % len(kinds)]
     told = bool(draw.integers(2))
     while True:

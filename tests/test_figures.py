@@ -590,7 +590,7 @@ LABELS = {
     "observability": ["time (s)", "instant", "1 s windows", "derivatives", "std. deviation"],
     "quantities": ["time (s)", "$d_{s}$ (1/m)", "$v_{c2}$ (m/s)", "$v_{c3}$ (m/s)"],
     "runs_over_time": ["time (s)", "$y_{3} = 1/Z$ (1/m)", "|error of $y_{3}$|"],
-    "scan": ["time offset", "left of the samples (1/1000)"],
+    "causes": ["wrong by so many times the usual size of the mistake"],
     "scene": ["$Z$ (m)", "$X$ (m)"],
     "settings_map": ["noise", "gain"],
     "signals": ["time (s)", "$y_{1}$", "$y_{2}$", "$y_{3} = 1/Z$ (1/m)", "|error|"],
@@ -615,7 +615,7 @@ def example(name):
     return lambda **axes: eval(f"{text}, **axes)", values | {"axes": axes})
 
 
-LONG = {"bound_map", "cases", "chatter", "comparison", "entries", "fields", "observability", "scan", "settings_map"}
+LONG = {"bound_map", "cases", "chatter", "comparison", "entries", "fields", "observability", "causes", "settings_map"}
 """Figures of studies, whose examples compute much."""
 
 

