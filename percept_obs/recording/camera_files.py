@@ -45,12 +45,8 @@ def fields_of_camera(path: PathLike, camera: str | None) -> dict[str, Any]:
     while len(distortion) > 8 and not distortion[-1]:  # a thin prism or a tilt that is none
         distortion.pop()
     size = found.get("resolution") or [found.get(f"image_{side}") for side in ("width", "height")]
-    return {
-        "focal": (fx, fy),
-        "centre": (cx, cy),
-        "size": None if None in size else size,
-        "distortion": distortion,
-    }
+    size = None if None in size else size
+    return {"focal": (fx, fy), "centre": (cx, cy), "size": size, "distortion": distortion}
 
 
 @checked

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -83,26 +84,17 @@ class ColmapModel:
         """
         import pandas as pd
 
-        path, surface, variance = self.poses.path(derivative), pinhole(), None
-        if pixel_sigma is not None:
-            variance = self.camera.variance(pixel_sigma)
+        path, surface = self.poses.path(derivative), pinhole()
+        variance = None if pixel_sigma is None else self.camera.variance(pixel_sigma)
         image, place = self.seen.T
         outputs, time = self.camera.image(self.pixels), path.time[image]
-        world = self.points[place] - path.position[image]
-        truths = surface.project(path.rotation[image].inv().apply(world))
+        truths = surface.project(path.rotation[image].inv().apply(self.points[place] - path.position[image]))
         truths[truths[:, -1] <= 0] = np.nan  # a wrong match
         labels, known = pd.Categorical([str(self.numbers[k]) for k in place]), np.ones(len(time), dtype=bool)
+        fields: dict[str, Any] = {"names": ("y1", "y2"), "view": surface, "motion": path.motion}
+        fields["noise_variance"] = variance
         return tuple(
-            Recording(
-                time[rows],
-                outputs[rows],
-                ("y1", "y2"),
-                surface,
-                path.motion,
-                truth=truths[rows],
-                noise_variance=variance,
-                source=source,
-            )
+            Recording(time[rows], outputs[rows], truth=truths[rows], source=source, **fields)
             for rows, source in tracks_of_points(name, labels, time, known, outputs, "point", gap, shortest)
         )
 

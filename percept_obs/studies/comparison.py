@@ -103,7 +103,7 @@ def compare(
         run(brief)  # so that the cost is without compiling
     rows = []
     for recording, label in bar([*product(recordings, follow)], "runs"):
-        (run,), cost = timed(follow[label], [recording])
+        run, cost = timed(follow[label], recording)
         outcome = run.outcome(tolerance, *coordinates)
         error = np.abs(recording.imaging_surface.inverse(run.error))
         late = error[from_the_start(run.elapsed, after)]
@@ -185,12 +185,11 @@ def described(found: pd.DataFrame) -> str:
     return str(pd.DataFrame(columns).to_string())
 
 
-def timed(follow: Callable[[Recording], Run], recordings: Sequence[Recording]) -> tuple[list[Run], float]:
-    """Return the runs on recordings, and the seconds of computing for a second of data."""
+def timed(follow: Callable[[Recording], Run], recording: Recording) -> tuple[Run, float]:
+    """Return the run on a recording, and the seconds of computing for a second of data."""
     begin = time.perf_counter()
-    runs = [follow(recording) for recording in recordings]
-    taken = time.perf_counter() - begin
-    return runs, taken / sum(float(recording.time[-1] - recording.time[0]) for recording in recordings)
+    run = follow(recording)
+    return run, (time.perf_counter() - begin) / float(recording.elapsed[-1])
 
 
 @checked

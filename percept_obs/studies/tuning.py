@@ -174,7 +174,7 @@ def _errors(
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", StepTooLong)
         for recording in bar(recordings, f"runs of {about['observer']}"):  # no run is kept
-            (run,), each = timed(estimate, [recording])
+            run, each = timed(estimate, recording)
             cost.append((each, float(recording.elapsed[-1])))
             reset, diverged = reset + (len(run.resets) > 0), diverged + (run.diverged_at is not None)
             for reference, seconds in questions:
