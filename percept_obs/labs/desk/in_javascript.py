@@ -39,7 +39,7 @@ def in_javascript(modules: Iterable[ModuleType], left_out: Iterable[str], known:
     for module, tree in trees:
         for node in tree.body:
             if isinstance(node, ast.FunctionDef | ast.ClassDef) and node.name not in left_out:
-                parts.append(printer.definition(node))
+                parts.append(printer.visit(node))
             elif isinstance(node, ast.Assign | ast.AnnAssign):
                 for name in [part.id for target in _targets(node) for part in _stored(target)]:
                     if name not in left_out and not name.startswith("__"):
@@ -111,9 +111,6 @@ class _Printer(ast.NodeVisitor):
 
     # What is defined.
 
-    def definition(self, node: ast.FunctionDef | ast.ClassDef) -> str:
-        return self.visit(node)
-
     def visit_ClassDef(self, node: ast.ClassDef) -> str:
         methods = [each for each in node.body if isinstance(each, ast.FunctionDef)]
         base = f" extends {self.visit(node.bases[0])}" if node.bases else ""
@@ -157,19 +154,12 @@ class _Printer(ast.NodeVisitor):
         return f"return {self.visit(node.value) if node.value else 'null'};"
 
     def visit_Assign(self, node: ast.Assign) -> str:
-        value = self.visit(node.value)
-        if len(node.targets) > 1:
-            names = [self.visit(target) for target in node.targets]
-            return f"{' = '.join(names)} = {value};"
-        return self.assigned(node.targets[0], value)
+        (target,) = node.targets
+        return self.assigned(target, self.visit(node.value))
 
     def assigned(self, target: ast.expr, value: str) -> str:
         if isinstance(target, ast.Subscript):
             return f"py.put({self.visit(target.value)}, {self.index(target.slice)}, {value});"
-        if isinstance(target, ast.Tuple) and any(isinstance(t, ast.Subscript | ast.Starred) for t in target.elts):
-            at = next((k for k, t in enumerate(target.elts) if isinstance(t, ast.Starred)), None)
-            if at is not None and at != len(target.elts) - 1:  # *words, end = tokens
-                raise ValueError(f"line {target.lineno}: only the last of several names takes the rest")
         value = f"py.list({value})" if isinstance(target, ast.Tuple) else value
         return f"{self.visit(target)} = {value};"
 
@@ -222,9 +212,6 @@ class _Printer(ast.NodeVisitor):
     def visit_Break(self, node: ast.Break) -> str:
         return "break;"
 
-    def visit_Pass(self, node: ast.Pass) -> str:
-        return ""
-
     # Expressions.
 
     def visit_Name(self, node: ast.Name) -> str:
@@ -271,8 +258,6 @@ class _Printer(ast.NodeVisitor):
         return f"new Map([{', '.join(parts)}])"
 
     def visit_Starred(self, node: ast.Starred) -> str:
-        if isinstance(node.ctx, ast.Store):
-            return f"...{self.visit(node.value)}"
         return f"...py.iter({self.visit(node.value)})"
 
     def visit_BinOp(self, node: ast.BinOp) -> str:
@@ -379,9 +364,6 @@ class _Printer(ast.NodeVisitor):
     def visit_ListComp(self, node: ast.ListComp) -> str:
         return f"py.list({self.visit_GeneratorExp(node)})"  # type: ignore[arg-type]
 
-    def visit_SetComp(self, node: ast.SetComp) -> str:
-        return f"py.set_({self.visit_GeneratorExp(node)})"  # type: ignore[arg-type]
-
     def visit_DictComp(self, node: ast.DictComp) -> str:
         self.local.append(_bound_in(node))
         text = self.comprehension(node, f"[{self.visit(node.key)}, {self.visit(node.value)}]")
@@ -390,9 +372,6 @@ class _Printer(ast.NodeVisitor):
 
     def visit_Yield(self, node: ast.Yield) -> str:
         return f"yield {self.visit(node.value)}" if node.value else "yield null"
-
-    def visit_YieldFrom(self, node: ast.YieldFrom) -> str:
-        return f"yield* py.iter({self.visit(node.value)})"
 
 
 _PYTHON = {
