@@ -21,7 +21,6 @@ _OPERATIONS = {
     ast.Mult: "mul",
     ast.Sub: "sub",
     ast.BitOr: "or",
-    ast.BitAnd: "and",
     ast.FloorDiv: "floor",
 }
 
@@ -375,23 +374,23 @@ class _Printer(ast.NodeVisitor):
 
 
 _PYTHON = {
-    *("all", "any", "bool", "dict", "difflib", "enumerate", "getattr", "hasattr"),
+    *("all", "any", "bool", "dict", "difflib", "enumerate", "hasattr"),
     *("int", "isinstance", "len", "list", "map", "max", "min", "next"),
     *("pairwise", "range", "re", "repr", "reversed", "set", "sorted", "str"),
-    *("sum", "suppress", "tuple", "unicodedata", "zip"),
+    *("sum", "suppress", "unicodedata", "zip"),
 }
 _QUESTIONS = {
     *("all", "any", "endswith", "hasattr", "isalpha", "isascii", "isdigit", "isinstance"),
     *("isspace", "startswith"),
 }
 _OTHERS = {
-    *("Symbol", "end", "escape", "findall", "finditer", "fullmatch", "get_close_matches", "groups"),
+    *("Symbol", "end", "findall", "finditer", "fullmatch", "get_close_matches", "groups"),
     *("match", "name", "normalize", "search", "span", "start", "sub", "update"),
 }
 """Methods of tokens, of regular expressions, and of modules."""
 _METHODS = {
-    *("add", "append", "count", "endswith", "extend", "fromkeys", "get", "index"),
-    *("isalpha", "isascii", "isdigit", "isspace", "items", "join", "keys", "lower"),
+    *("add", "append", "count", "endswith", "fromkeys", "get", "index"),
+    *("isalpha", "isascii", "isdigit", "isspace", "items", "join", "lower"),
     *("lstrip", "pop", "removeprefix", "removesuffix", "replace", "rstrip", "setdefault", "split"),
     *("startswith", "strip", "values"),
 }

@@ -174,7 +174,6 @@ const METHODS = {
   pop: (x, k) => (k === undefined ? x.pop() : x.splice(place(k, x.length), 1)[0]),
   items: (x) => [...x.entries()],
   values: (x) => [...x.values()],
-  keys: (x) => [...x.keys()],
   get: (x, key, other = null) => (x.has(plain(key)) ? x.get(plain(key)) : other),
   setdefault(x, key, other = null) {
     if (!x.has(plain(key))) x.set(plain(key), other);
@@ -250,7 +249,6 @@ export const py = {
   sub: (one, other) =>
     one instanceof Set ? new Set([...one].filter((each) => !other.has(each))) : Number(one) - Number(other),
   or: (one, other) => (one instanceof Map ? new Map([...one, ...other]) : new Set([...one, ...py.iter(other)])),
-  and: (one, other) => new Set([...one].filter((each) => py.in(each, other))),
   key: plain,
   pattern,
   /** A dictionary or a regular expression that is among the tables. */
@@ -292,12 +290,10 @@ export const py = {
     if (!known.has(name)) known.set(name, owner[name].bind(owner));
     return known.get(name);
   },
-  join: (parts) => parts.map(plain).join(""),
   str: (x = "") => (x === null ? "None" : x.name ?? String(plain(x))),
   repr: (x) => `'${plain(x)}'`,
   len: (x) => (x instanceof Map || x instanceof Set ? x.size : plain(x).length),
   list: (x = []) => [...py.iter(x)],
-  tuple: (x = []) => [...py.iter(x)],
   set_: (x = []) => new Set([...py.iter(x)].map(plain)),
   dict: (x = []) => Object.assign(new Map([...(x instanceof Map ? x : py.iter(x))]), {}),
   bool: (x) => py.t(x),
@@ -336,7 +332,6 @@ export const py = {
     findall: (text, x) => pattern(text).findall(x),
     sub: (text, by, x, given) => pattern(text).sub(by, x, given),
     split: (text, x) => pattern(text).split(x),
-    escape: (x) => plain(x).replace(/[^A-Za-z0-9_]/g, "\\$&"),
   },
   unicodedata: {
     normalize: (form, x) => plain(x).normalize(form),
