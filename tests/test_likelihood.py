@@ -52,6 +52,7 @@ def test_what_makes_no_sense_is_refused():
     for ask, message in (
         (lambda: log_likelihood([]), "there is no run"),
         (lambda: log_likelihood([run], -1.0), "must not be negative"),
+        (lambda: log_likelihood([run], 1e9), "nor beyond a run, which lasts"),
         (lambda: log_likelihood([track(RECORDINGS[0], ibo(BOTH), ZERO)]), "claims no covariance"),
         (lambda: tune_by_likelihood([], ekf(BOTH), {"noise_variance": (1e-3, 1)}, follow), "0 recordings"),
         (lambda: tune_by_likelihood(RECORDINGS, ekf(BOTH), {}, follow), "0 gains"),

@@ -85,3 +85,11 @@ def test_it_shows_itself():
     assert "P^{-1}" in observer._repr_latex_()
     assert observer.name == "Luenberger, Riccati"
     assert observer.about.claim.startswith("global")
+
+
+def test_a_sampled_p_changes_as_its_samples_do_up_to_the_last_one():
+    sampled = scheduled([[1.0], [2.0], [2.5]], [0.0, 1.0, 2.0]).sized(2)
+    rates = sampled.rate([0.0, 0.5, 1.5, 2.0])
+    np.testing.assert_allclose(rates, np.array([1, 1, 0.5, 0.5])[:, None, None] * np.eye(2), atol=1e-9)
+    np.testing.assert_allclose(sampled.at([0.5, 2.0]), np.array([1.5, 2.5])[:, None, None] * np.eye(2))
+    assert constant(2.0).sized(2).rate([0.0, 1.0]).tolist() == np.zeros((2, 2, 2)).tolist()

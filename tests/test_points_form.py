@@ -127,6 +127,12 @@ def test_whatever_the_motion_is_taken_seriously():
     assert PointsForm(linear(states=4), np.eye(4)[:3]).unseen.shape[1] == 0
 
 
+@pytest.mark.parametrize("mixed", [[[0, 1], [1, 0]], [[1, 1], [1, -1]], [[0.1, 2], [3, 0.2]]])
+def test_directions_are_named_alike_however_they_are_mixed(mixed):
+    apart = np.array([[1, 0, -1, 0], [0, 1, 0, -1]], dtype=float).T
+    assert in_words(apart @ np.array(mixed, dtype=float), ["r_x", "r_y", "d_x", "d_y"]) == ("r_x - d_x", "r_y - d_y")
+
+
 def test_an_observer_fits_recordings_of_as_many_points_on_the_same_surface():
     two = independent_points(affine(), 2)
     assert two.fits(rigid_body(2))

@@ -107,8 +107,9 @@ def log_likelihood(runs: Sequence[Run], after: float = 0.0) -> float:
     """
     if not len(runs):
         raise ValueError("there is no run; give one at least, such as [track(recording, ekf(form))]")
-    if not after >= 0:
-        raise ValueError(f"after is {after} s; it must not be negative")
+    last = min(run.elapsed[-1] for run in runs)
+    if not 0 <= after <= last:
+        raise ValueError(f"after is {after} s; it must not be negative, nor beyond a run, which lasts {last:.4g} s")
     if any(run.diverged_at is not None for run in runs):
         return -math.inf
     return float(sum(np.nansum(run.log_likelihood[from_the_start(run.elapsed, after)]) for run in runs))

@@ -24,14 +24,12 @@ def breaks_of(time: sp.Symbol, expressions: tuple[sp.Expr, ...], until: float) -
     [0.333333333, 0.333333333]
     """
     turned = {
-        sp.Abs: lambda node: node.args[0],
-        sp.sign: lambda node: node.args[0],
-        sp.Heaviside: lambda node: node.args[0],
-        sp.tan: lambda node: sp.cos(node.args[0]),
-        Relational: lambda node: node.lhs - node.rhs,
-        sp.Pow: lambda node: node.base if node.exp.could_extract_minus_sign() else sp.S.One,
+        (sp.Abs, sp.sign, sp.Heaviside): lambda node: node.args[0],
+        (sp.tan,): lambda node: sp.cos(node.args[0]),
+        (Relational,): lambda node: node.lhs - node.rhs,
+        (sp.Pow,): lambda node: node.base if node.exp.could_extract_minus_sign() else sp.S.One,
     }
-    found = {rule(node) for kind, rule in turned.items() for node in sp.Tuple(*expressions).atoms(kind)}
+    found = {rule(node) for kinds, rule in turned.items() for node in sp.Tuple(*expressions).atoms(*kinds)}
     switches = [each for each in found if each.free_symbols == {time}]
     if not switches or not until > 0:
         return ()
