@@ -36,7 +36,8 @@ def open_store(
     import zarr
 
     store = Path(path)
-    if not os.fspath(path) or (store.exists() and not (store / "zarr.json").exists() and _holds(store)):
+    taken = any(store.iterdir()) if store.is_dir() else store.exists()
+    if not os.fspath(path) or (taken and not (store / "zarr.json").exists()):
         raise ValueError(f"the store {os.fspath(path)!r} is no Zarr store; name a new folder, such as ensemble.zarr")
     store.parent.mkdir(parents=True, exist_ok=True)
     # The system gives a lock of a database back when its process ends, however it ends.
@@ -63,11 +64,6 @@ def open_store(
     finally:
         lock.close()
         Path(f"{store}.lock").unlink(missing_ok=True)
-
-
-def _holds(store: Path) -> bool:
-    """Return True for a file, and for a folder that is not empty."""
-    return not store.is_dir() or any(store.iterdir())
 
 
 def run_missing(plan: Plan, results: Array, chunk: int, client: Any = None, stored: Any = None) -> None:
