@@ -142,6 +142,11 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
         runs; failed (not converged), reset (runs with a reset), diverged; and for settling_time, final, rms, worst and
         cost the median with the 16 % and 84 % quantiles (columns name, name_low, name_high).
 
+    Raises
+    ------
+    ValueError
+        If the table lacks columns of `compare`.
+
     See Also
     --------
     described : the summary as text
