@@ -136,8 +136,10 @@ def _estimate(value: Array, columns: Array, left: Array, block: Indices, spread:
     if least <= np.finfo(float).eps * float(np.trace(information)) or not least > 0:
         return Estimate(value, math.inf, 0.0)
     scores = np.array([(columns * left[:, None])[block == k].sum(axis=0) for k in range(BLOCKS)])
-    solved = np.linalg.solve(information, scores.T).T
-    clustered = solved.T @ solved * BLOCKS / (BLOCKS - 1)
+    steps = np.linalg.solve(information, scores.T).T
+    value = value - steps.sum(axis=0)  # to the least squares of a number that was not fitted
+    apart = steps - steps.mean(axis=0)
+    clustered = apart.T @ apart * BLOCKS / (BLOCKS - 1)
     white = np.linalg.inv(information) * spread**2
     both = [float(value @ np.linalg.lstsq(matrix, value, rcond=None)[0]) for matrix in (white, clustered + white)]
     return Estimate(value, spread / math.sqrt(least), math.sqrt(max(0.0, min(both)) / len(value)))
