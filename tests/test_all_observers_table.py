@@ -164,3 +164,14 @@ def test_one_output_without_a_truth_needs_a_filter():
     one = [replace(each, outputs=each.outputs[:, :1], names=("y1",)) for each in BLIND]
     with pytest.raises(ValueError, match="no filter or least squares for its place; add a filter to candidates"):
         found(one)
+    with pytest.raises(ValueError, match="every observer needs at least one candidate"):
+        found(BLIND, candidates={de_luca: ()})
+
+
+def test_without_a_truth_what_nothing_estimates_is_left_out_and_measured_distances_are_named():
+    lost = np.where(np.arange(len(BLIND[1].time))[:, None] < 1, BLIND[1].outputs, np.nan)
+    laser = [replace(each, distances={"laser": np.ones(len(each.time))}) for each in BLIND]
+    one_call = found([*laser, replace(laser[0], outputs=lost)], after=(1.0,))
+    assert len(one_call.choosing) == len(one_call.reporting) == 2
+    assert "1 recordings are left out, for least squares on 2 s has no estimate" in repr(one_call)
+    assert "name references, such as laser" in repr(one_call)

@@ -234,12 +234,13 @@ def all_observers(
     if blind:
         units = [replace(each, unit=length) for each in choosing]
         label, estimate, sentence = _judge(units, form, follow, tried, batch)
+        count = len(choosing) + len(reporting)
         choosing, reporting = (_with_distance(half, label, estimate, length) for half in (choosing, reporting))
-        measured = ", ".join(first.distances)
-        notes += [
-            sentence,
-            *([f"To compare with what was measured, name references, such as {measured}"] * bool(measured)),
-        ]
+        notes.append(sentence)
+        if lost := count - len(choosing) - len(reporting):
+            notes.append(f"{lost} recordings are left out, for {label} has no estimate in front of the camera there")
+        if first.distances:
+            notes.append(f"To compare with what was measured, name references, such as {', '.join(first.distances)}")
         references = (label,)
     judged = MOST_JUDGED if blind else 0
     table = choose_and_report(choosing, reporting, form, follow, tried, batch, lasting, references, length, judged)
@@ -268,7 +269,7 @@ def _judge(
     """Label and function of the estimate that stands for a truth, and a sentence; filters in `tried` are tuned."""
     label, estimate, tuned = LEAST_SQUARES, batch.get(LEAST_SQUARES), ""
     for make, candidates in tried.items():
-        observer = None if make.refusal(form) else make(form, **candidates[0])
+        observer = None if make.refusal(form) or not candidates else make(form, **candidates[0])
         if observer is None or observer.covariance is None or not observer.equations.update:
             continue
         values = {gain.name: {each.get(gain.name, gain.value) for each in candidates} for gain in observer.gains}
