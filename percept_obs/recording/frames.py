@@ -132,7 +132,8 @@ def render(recording: Recording, count: int = 60, size: int = 160, radius: float
         raise ValueError("the recording has no truth to draw; give frames of its camera instead")
     if count < 1 or size < 2:
         raise ValueError(f"{count} frames of {size} pixels a side are none; take at least 1 frame of 2 pixels")
-    limit(float(size) ** 2 * min(count, len(recording.time)), "pixels", "take fewer or smaller frames")
+    count = min(count, len(recording.time))
+    limit(float(size) ** 2 * count, f"pixels, from {count} frames of the size {size}", "take fewer or smaller frames")
     which = np.unique(np.linspace(0, len(recording.time) - 1, count).astype(int))
     y1, y2, inverse = recording.truth[which][:, [0, 1, -1]].T
     low, high = (np.array([bound(y1), bound(y2)]) for bound in (np.min, np.max))
