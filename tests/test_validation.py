@@ -130,9 +130,12 @@ test_what_has_no_sense_is_refused_in_a_sentence = refuses(
     (lambda: PointsForm(rigid([0, 0, 1], [0, 0, 0], [0, 0, 0]), np.zeros((2, 3, 3))), "a block of C is 0"),
     (lambda: summary(pd.DataFrame({"a": [1]})), "the table has no columns cost, .*; give one from compare"),
     (lambda: render(SHORT, 0), "0 frames of 160 pixels a side are none"),
-    (lambda: render(SHORT, size=10**6), "pixels, and at most .*; take fewer or smaller frames"),
+    (lambda: render(SHORT, size=10**6), "pixels, from 11 frames of the size 1000000, .*; take fewer or smaller frames"),
     (lambda: image_plane(SHORT, ax=5), "ax is the number 5; expected an Axes"),
-    (lambda: signals(track(SHORT, ibo(BOTH)), axes=[1, 2, 3, 4]), "axes is the number 1; expected an Axes"),
+    (
+        lambda: signals(track(SHORT, ibo(BOTH)), axes=[1, 2, 3, 4]),
+        "axes is the list .*; expected a sequence, each entry an Axes",
+    ),
     (lambda: grid(gain=5), "gain is the number 5; .*: put it into a list"),
     (lambda: reach(1.0, lambda gain: {"seconds": "soon"}, seconds=2), "the experiment gives no number seconds"),
 )

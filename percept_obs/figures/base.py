@@ -23,7 +23,7 @@ from percept_obs.compile import Array as Array
 from percept_obs.figures.look import GREY, LIGHT, WIDTH
 from percept_obs.recording import Recording
 from percept_obs.tracking.run import Run
-from percept_obs.validation import checked, refuse_kind
+from percept_obs.validation import checked
 from percept_obs.validation.kinds import with_article
 
 P = ParamSpec("P")
@@ -141,7 +141,6 @@ def canvas(ax: Axes | None, height: float, **kind: Any) -> Axes:
         new = matplotlib.figure.Figure(figsize=(WIDTH, height), layout="constrained")
         with matplotlib.rc_context({"grid.color": LIGHT}):  # three-dimensional axes take it from there only
             ax = new.add_subplot(**kind)
-    refuse_kind("figure", "ax", ax, Axes)
     if ax.name != "3d":
         _tidy(ax)
     return ax
@@ -157,7 +156,6 @@ def canvases(axes: Sequence[Axes] | None, parts: Sequence[str], height: float, *
     if len(found) != len(parts):
         raise ValueError(f"axes= has {len(found)} axes; {len(parts)} are needed, for {', '.join(parts)}")
     for ax in found:
-        refuse_kind("figure", "axes", ax, Axes)
         _tidy(ax)
     return found
 
