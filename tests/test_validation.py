@@ -130,7 +130,7 @@ test_what_has_no_sense_is_refused_in_a_sentence = refuses(
     (lambda: PointsForm(rigid([0, 0, 1], [0, 0, 0], [0, 0, 0]), np.zeros((2, 3, 3))), "a block of C is 0"),
     (lambda: summary(pd.DataFrame({"a": [1]})), "the table has no columns cost, .*; give one from compare"),
     (lambda: render(SHORT, 0), "0 frames of 160 pixels a side are none"),
-    (lambda: render(SHORT, size=10**6), "pixels, from 11 frames of the size 1000000, .*; take fewer or smaller frames"),
+    (lambda: render(SHORT, size=10**6), "pixels, from 11 frames of the size 1000000, "),
     (lambda: image_plane(SHORT, ax=5), "ax is the number 5; expected an Axes"),
     (
         lambda: signals(track(SHORT, ibo(BOTH)), axes=[1, 2, 3, 4]),
