@@ -4,6 +4,8 @@ import warnings
 from dataclasses import replace
 
 import numpy as np
+from distrust_study import GAINS, REST, place_across, waves
+from scipy.spatial.transform import Rotation
 
 from percept_obs import Camera, Gaussian, PerspectiveSystem, Uniform, pinhole, record, rigid, track
 from percept_obs.observers import OBSERVERS
@@ -65,3 +67,77 @@ def figures(seeds):
     error, trusted = np.array([judged(seed) for seed in seeds]).T
     wrong, right = ~(error <= WRONG), error <= RIGHT
     return trusted[wrong].mean(), 1 - trusted[right].mean(), wrong.sum(), right.sum()
+
+
+POSES = ("exact", "noisy", "drifting", "crooked")
+"""Errors of a camera's poses: none, white noise of velocities, a scale from 1 to 1.4, axes 0.3 to 2 degrees off."""
+
+
+def believed(draw, poses, turning, velocity, duration):
+    """The motion of a point at rest as it is known from poses with errors."""
+    times = np.arange(-0.1, duration + 0.2, 0.04)
+    w, v = (np.array([each(t) for t in times]) for each in (turning, velocity))
+    if poses == "noisy":
+        speed = np.sqrt((v**2).sum(axis=1).mean())
+        w = w + draw.normal(0, draw.uniform(0.005, 0.05), w.shape)
+        v = v + draw.normal(0, speed * draw.uniform(0.01, 0.1), v.shape)
+    if poses == "drifting":
+        v = v * (1 + 0.4 * np.clip(times / duration, 0, 1))[:, None]
+    if poses == "crooked":
+        axis = draw.normal(size=3)
+        turn = Rotation.from_rotvec(np.radians(draw.uniform(0.3, 2)) * axis / np.linalg.norm(axis))
+        w, v = turn.apply(w), turn.apply(v)
+    return rigid(w, v, REST, times)
+
+
+def posed(seed, poses, sigma=None):
+    """A recording, the motion that is believed, and a generator; a hand carries the camera, or it moves evenly."""
+    draw = np.random.default_rng(seed)
+    while True:
+        depth, speed = draw.uniform(2, 6), draw.uniform(0.3, 0.7)
+        place = depth * np.array([*draw.uniform(-0.3, 0.3, 2), 1.0])
+        turning, velocity = waves(draw, draw.choice([0.0, 0.1, 0.2])), waves(draw, speed)
+        if draw.random() < 0.3:
+            w, v = turning(0.0), speed * place_across(draw, place)
+            turning, velocity = (lambda t, w=w: w), (lambda t, v=v: v)
+        noise, duration = Gaussian(sigma or 10 ** draw.uniform(-3.3, -2.3)), draw.uniform(5, 8)
+        scenario = Scenario(poses, rigid(turning, velocity, REST), place, duration, pinhole())
+        try:
+            seen = record(scenario, camera=Camera(draw.choice([0.02, 0.04]), noise), seed=seed)
+        except BehindCamera:
+            continue
+        if np.abs(seen.truth[:, :2]).max() < 1.5 and seen.distance.min() > 0.8:
+            return seen, believed(draw, poses, turning, velocity, duration), draw
+
+
+def blindly(run, **known):
+    """Relative error at the end, and the trust in it of one who has no truth."""
+    error = float(run.relative_error[-1]) if run.diverged_at is None else np.nan
+    return error, replace(run, recording=replace(run.recording, truth=None, signal=None, **known)).trust()
+
+
+def trusted_with(seed, poses):
+    """Error and trust of some observer with some outputs; half of them know the noise."""
+    recording, known, draw = posed(seed, poses)
+    form = FORMS[draw.choice(3, p=[0.7, 0.15, 0.15])]
+    able = [make for make in OBSERVERS if not (make.refusal(form) or make.constant_motion)]
+    make = able[draw.integers(len(able))]
+    observer, variance = make(form), recording.noise_variance
+    if make.key == "extended_kalman":
+        doubt = draw.choice([0.0, 1e-5])
+        observer = observer.with_gains(
+            noise_variance=variance, hidden_variance=0.1, turning_noise=doubt, velocity_noise=doubt
+        )
+    else:
+        recording, observer = replace(recording, unit=0.7), observer.with_gains(**GAINS.get(make.key, {}))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        run = track(recording, observer, {"y3": 0.3}, believed=known, language="numba")
+        return blindly(run, motion=known, noise_variance=variance if seed % 2 else None)
+
+
+def shares(found):
+    """Shares that are trusted and over 20 % off, trusted and over 10 %, and flagged among those right to 5 %."""
+    error, trusted = np.array([(error, trust.trusted) for error, trust in found]).T
+    right, trusted = error <= RIGHT, trusted > 0
+    return np.mean(trusted & ~(error <= WRONG)), np.mean(trusted & ~(error <= 0.1)), 1 - trusted[right].mean()

@@ -6,11 +6,16 @@ from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain
 from percept_obs.observers.parts import first_seen, hats
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.motion import rigid
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import ImagingSurface
 
-R, Q, Q2, P1, P2 = sp.symbols("R Q Q2 P01 P02", real=True)
+R, Q, Q2, QW, QV, P1, P2 = sp.symbols("R Q Q2 Q_w Q_v P01 P02", real=True)
 
 EXACT = "with 0 the filter divides by the variance of what it knows exactly"
 HIDDEN_DOUBT = "what is added to it in the hidden part, which may change more than the motion says"
+TURNING = "density of the noise in the known angular velocity: variance times the time between samples"
+VELOCITY = "density of the noise in the known velocity"
 GIVEN = "variance of a given start in the measured part"
 WHY = "it is a variance"
 NEVER = "it is a variance, and a start known exactly is never corrected"
@@ -26,6 +31,8 @@ NEVER = "it is a variance, and a start known exactly is never corrected"
         Gain(R, "noise_variance", 1e-4 / 3, 1e-7, 1e-2, "1", "variance of the noise in each output", R > 0, EXACT),
         Gain(Q, "process_noise", 0, 0, 1e-2, "1/s", "variance per second by which the motion is doubted", Q >= 0, WHY),
         Gain(Q2, "hidden_process_noise", 0, 0, 1, "1/(m^2 s)", HIDDEN_DOUBT, Q2 >= 0, WHY),
+        Gain(QW, "turning_noise", 0, 0, 1e-2, "1/s", TURNING, QW >= 0, WHY),
+        Gain(QV, "velocity_noise", 0, 0, 1e-2, "m^2/s", VELOCITY, QV >= 0, WHY),
         Gain(P1, "measured_variance", 1, 1e-4, 10, "1", GIVEN, P1 > 0, NEVER),
         Gain(P2, "hidden_variance", 1, 1e-4, 10, "1/m^2", "variance of the start in the hidden part", P2 > 0, NEVER),
     ),
@@ -43,7 +50,10 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
     Between samples, with the system's rate f and its Jacobian F at the estimate::
 
         xhat' = f(xhat)
-        P' = F P + P F^T + Q I + Q2 I2,      I2 = 1 for hidden coordinates, else 0
+        P' = F P + P F^T + Q I + Q2 I2 + G diag(Q_w, Q_w, Q_w, Q_v, Q_v, Q_v) G^T
+
+    with I2 = 1 for hidden coordinates, else 0, and G, the Jacobian of the rate with respect to angular velocity and
+    velocity: their noise moves each coordinate by what it does to the image there.  Without an imaging surface G is 0.
 
     At a sample of each measured output y_j in turn, with column P_j of P::
 
@@ -59,7 +69,8 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
     Notes
     -----
     Jazwinski, Stochastic Processes and Filtering Theory (1970), section 8.3.  R is by default that of uniform noise of
-    +-0.01; Q2 suits constants that may wander.
+    +-0.01; Q2 suits constants that may wander.  White noise of the variance s^2 in velocities that are known every T
+    seconds has the density s^2 T.
 
     Examples
     --------
@@ -77,7 +88,9 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
     rate = form.rate.xreplace(dict(zip(x, x_hat, strict=True)))
     F = rate.jacobian(x_hat)
     P = sp.ImmutableMatrix(size, size, lambda i, j: sp.Symbol(f"P{min(i, j) + 1}{max(i, j) + 1}", real=True))
-    P_rate = F * P + P * F.T + sp.diag(*(Q for _ in form.x1), *(Q + Q2 for _ in form.x2))
+    G = _of_the_motion(form).xreplace(dict(zip(x, x_hat, strict=True)))
+    doubt = sp.diag(*(Q for _ in form.x1), *(Q + Q2 for _ in form.x2)) + G * sp.diag(QW, QW, QW, QV, QV, QV) * G.T
+    P_rate = F * P + P * F.T + doubt
 
     def state(estimate: sp.Matrix, covariance: sp.Matrix) -> tuple[sp.Expr, ...]:
         return (*estimate, *(covariance[i, j] for i in range(size) for j in range(i, size)))
@@ -88,6 +101,16 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
         updates.append(state(sp.Matrix(x_hat) + gain * (y - x_hat[k]), P - gain * P.row(k)))
     spread = sp.diag(*(P1 + (R - P1) * seen for seen in first_seen(form.x1)), *(P2 for _ in form.x2))
     return Derived(state(x_hat, P), state(rate, P_rate), state(x_hat, spread), update=tuple(updates), covariance=P)
+
+
+def _of_the_motion(form: PartitionedSystem) -> sp.ImmutableMatrix:
+    """Derivative of the rate with respect to angular velocity and velocity, shape (n, 6); 0 if there is no surface."""
+    x = (*form.x1, *form.x2)
+    if not isinstance(form.view, ImagingSurface):
+        return sp.ImmutableMatrix.zeros(len(x), 6)
+    moved = PerspectiveSystem(rigid(), form.view)
+    order = [moved.coordinates.index(symbol) for symbol in x]
+    return moved.rate.extract(order, [0]).jacobian(moved.motion.parameters[:6])
 
 
 ekf = extended_kalman

@@ -23,7 +23,7 @@ PASSES = 4
 def many_points(form: PointsForm, recording: Recording) -> Fit:
     """Least squares on the images: B C (Phi x + c) = 0 for the state x at the end, over the distance of each point."""
 
-    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array]:
+    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array, float]:
         every = max(1, (len(recording.time) - first) * form.states**2 // LARGEST_TABLE)
         used = np.arange(len(recording.time) - 1, first - 1, -every)  # backwards from the end
         outputs = recording.outputs[used]
@@ -51,8 +51,8 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
         known_noise = math.sqrt(recording.noise_variance or 0.0)
         noise = max(math.sqrt(max(residual, 0.0) / free), finest, known_noise) if free > 0 else math.nan
         if free < 1 or not (depth[seen] > 0).all():
-            return x, math.inf, np.full(m, noise)
-        return x, _worst(form, x, values, vectors, determined, noise), np.full(m, noise)
+            return x, math.inf, np.full(m, noise), 0.0
+        return x, _worst(form, x, values, vectors, determined, noise), np.full(m, noise), 0.0
 
     return fit
 

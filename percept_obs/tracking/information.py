@@ -15,6 +15,7 @@ from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.system.view import View
+from percept_obs.tracking.doubts import DOUBTS, FAR, SPLIT, images_backwards
 from percept_obs.tracking.grid import known_signals
 
 ENOUGH = 0.02
@@ -26,10 +27,7 @@ NOTHING = 1.0
 FEWEST = 20
 """Samples in the shortest window."""
 
-SPLIT = 500
-"""Steps at most into which a window is divided; between their ends the outputs are interpolated."""
-
-LONGER = 2
+LONGER = 3
 """Windows twice as long each, by which the known motion is tested once one is long enough."""
 
 SURELY = 3.5
@@ -45,7 +43,8 @@ class Information:
 
     The deviation is the relative standard deviation of what is judged, infinite where samples tell nothing; `unexcited`
     are the seconds at the end in which they do.  The noise has the standard deviation of each output, as given or that
-    of the residuals.  Estimates from longer windows agree if the motion is as it is known.
+    of the residuals.  The drift is the change of the known translation's scale, over the whole recording, of which the
+    samples leave no doubt.  Estimates from longer windows agree if the motion is as it is known.
     """
 
     estimate: Array
@@ -53,18 +52,21 @@ class Information:
     window: float
     unexcited: float
     noise: Array
+    drift: float = 0.0
     longer: tuple[Information, ...] = ()
 
     def disagreement(self, view: View, known: Array) -> float:
-        """Relative distance to the estimates from longer windows beyond what noise explains, or their vagueness."""
+        """Relative distance to the estimates from longer windows, less what noise explains; infinite if they are lost.
+
+        Independent errors add by their squares.
+        """
         found = 0.0
         for other in self.longer:
             if not other.deviation < NOTHING:
                 return math.inf
             apart = float(view.relative_error(self.estimate[None], other.estimate[None], known)[0])
-            noise = 2 * (self.deviation + other.deviation)
-            found = max(found, apart - noise, 2 * (other.deviation - self.deviation))
-        return found
+            found = max(found, apart**2 - self.deviation**2 - other.deviation**2)
+        return math.sqrt(found)
 
 
 ROUNDING = 1e-7
@@ -73,12 +75,9 @@ ROUNDING = 1e-7
 SMALL = 1e-4
 """Relative change of a coordinate for a difference quotient."""
 
-FAR = 1e3
-"""Value of outputs that have left all bounds."""
-
-Fit = Callable[[int, list[Array]], tuple[Array, float, Array]]
+Fit = Callable[[int, list[Array]], tuple[Array, float, Array, float]]
 """Least squares on the samples from one on, from the best of some initial guesses; returns coordinates at the end,
-their relative deviation, and the noise of each output."""
+their relative deviation, the noise of each output, and the drift of scale that the samples surely tell."""
 
 
 def information_at_end(fit: Fit, elapsed: Array, guess: Array) -> Information:
@@ -92,13 +91,13 @@ def information_at_end(fit: Fit, elapsed: Array, guess: Array) -> Information:
     while True:
         first = count - length
         window = float(elapsed[-1] - elapsed[first])
-        estimate, deviation, noise = fit(first, guesses)
+        estimate, deviation, noise, drift = fit(first, guesses)
         if deviation >= NOTHING and not found:
             unexcited = window
         elif deviation < NOTHING:
             guesses = [*guesses[:1], estimate]
         if found or deviation <= ENOUGH or first == 0:
-            found.append(Information(estimate, deviation, window, unexcited, noise))
+            found.append(Information(estimate, deviation, window, unexcited, noise, drift))
         if len(found) > LONGER or first == 0:
             return replace(found[0], longer=tuple(found[1:]))
         length = min(2 * length, count)
@@ -112,51 +111,56 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
     """
     from scipy.optimize import least_squares
 
-    plant = Equations((*form.x1, *form.x2), tuple(form.rate), (), form.parameters)
+    view, scale, unknown = recording.view, recording.scale, form.coordinates
     columns = [recording.names.index(name) for name in form.measured]
-    order = [plant.state.index(symbol) for symbol in form.coordinates]
-    inverse = np.argsort(order)
-    size, measured, view = len(plant.state), len(form.x1), recording.view
-    known_noise = (recording.noise_variance or 0.0) if isinstance(view, ImagingSurface) else 0.0
-    at_end, scale = recording.motion.known(recording.time[-1:]), recording.scale
+    places = [unknown.index(symbol) for symbol in form.x1]
+    size, measured, surface = len(unknown), len(columns), isinstance(view, ImagingSurface)
+    known_noise = (recording.noise_variance or 0.0) if surface else 0.0
+    at_end = recording.motion.known(recording.time[-1:])
 
-    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array]:
+    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array, float]:
         samples = recording.outputs[first:, columns]
         seen = np.isfinite(samples)
         free = int(seen.sum()) - size
         if free < 1 or not seen.any(axis=0).all():
-            return np.full(size, np.nan), math.inf, np.full(measured, np.nan)
-        backwards = _backwards(plant, recording, first, measured)
-        plain = np.zeros(size)
-        plain[:measured] = [column[np.isfinite(column)][-1] for column in samples.T]
-        begins = [plain, *((guess * scale)[inverse] for guess in guesses)]
-        start = min(begins, key=lambda x: float(((samples - backwards(x))[seen] ** 2).sum()))
+            return np.full(size, np.nan), math.inf, np.full(measured, np.nan), 0.0
+        images = images_backwards(recording, first, columns) if surface else _backwards(form, recording, first)
+        doubts = DOUBTS if surface else ()
+        plain = np.zeros(size + len(doubts))
+        plain[places] = [column[np.isfinite(column)][-1] for column in samples.T]
+        begins = [plain, *(np.append(guess * scale, plain[size:]) for guess in guesses)]
+        start = min(begins, key=lambda x: float(((samples - images(x))[seen] ** 2).sum()))
         finest = max(FINEST * float(np.abs(samples[seen]).max()), math.sqrt(known_noise)) or FINEST
         noise = np.ones(measured)
         for _ in range(2):
 
             def residuals(x: Array, noise: Array = noise) -> Array:
-                return np.asarray(((backwards(x) - samples) / noise)[seen])
+                return np.append(((images(x) - samples) / noise)[seen], x[size:] / np.array(doubts))
 
             solution = least_squares(residuals, start, x_scale="jac", diff_step=SMALL, max_nfev=50)
-            start, rest = solution.x, np.where(seen, samples - backwards(solution.x), 0.0)
+            start, rest = solution.x, np.where(seen, samples - images(solution.x), 0.0)
             spread = np.sqrt((rest**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
             if _inflation(rest / np.maximum(spread, finest)) > 1:  # residuals drift: trust no output more than others
                 spread[:] = math.sqrt((spread**2).mean())
             before, noise = noise, np.maximum(spread, finest)
-        weighted = solution.jac * (before / noise)[np.nonzero(seen)[1]][:, None]
-        deviations = np.array([_deviation(weighted, k) for k in range(size)])[order]
-        deviations *= _inflation(rest / noise) if (spread > finest).any() else 1.0
-        estimate = start[order] / scale
-        return estimate, relative_deviation(view, estimate, deviations / scale, at_end), noise
+        inflation = _inflation(rest / noise) if (spread > finest).any() else 1.0
+        weighted = solution.jac
+        weighted[: free + size] *= (before / noise / inflation)[np.nonzero(seen)[1]][:, None]
+        deviations = np.array([_deviation(weighted, k) for k in range(size + surface)])
+        estimate, drift = start[:size] / scale, 0.0
+        if surface:
+            drift = max(0.0, abs(float(start[size])) - 2 * deviations[size])
+        return estimate, relative_deviation(view, estimate, deviations[:size] / scale, at_end), noise, drift
 
     return fit
 
 
-def _backwards(plant: Equations, recording: Recording, first: int, measured: int) -> Callable[[Array], Array]:
-    """The outputs at the samples from one on, shape (K - first, m), as a function of the coordinates at the end."""
+def _backwards(form: PartitionedSystem, recording: Recording, first: int) -> Callable[[Array], Array]:
+    """The measured outputs at the samples from one on, as a function of the coordinates at the end."""
     from scipy.interpolate import CubicSpline
 
+    plant = Equations((*form.x1, *form.x2), tuple(form.rate), (), form.parameters)
+    order = [form.coordinates.index(symbol) for symbol in plant.state]
     time = recording.time[first:]
     span = time[-1] - time[0]
     nodes = np.linspace(time[-1], time[0], 1 + max(3, math.ceil(span / max(LONGEST_STEP, span / SPLIT))))
@@ -165,9 +169,9 @@ def _backwards(plant: Equations, recording: Recording, first: int, measured: int
     table = Table(steps, np.empty((len(steps), EACH + 1, 0)), known, np.empty((len(nodes), 0)))
 
     def outputs(x: Array) -> Array:
-        states = solve(plant, x, table).states[:, :measured]
+        states = solve(plant, x[order], table).states[:, : len(form.x1)]
         if not np.isfinite(states).all():
-            return np.full((len(time), measured), FAR)
+            return np.full((len(time), len(form.x1)), FAR)
         return np.asarray(CubicSpline(nodes[::-1] - time[0], states[::-1])(time - time[0]))
 
     return outputs

@@ -247,8 +247,10 @@ class Run:
         """Judge the last estimate without a truth.
 
         It is trusted where the samples by themselves tell what is sought to within the tolerance, with two standard
-        deviations, and the estimate is no farther than both together from their least-squares estimate.  A wrong scale
-        of the known motion leaves no trace in the samples.
+        deviations, the observer claims no more than that, and the estimate's distance to the least-squares estimate
+        with one standard deviation is within it.  Doubts of the known motion widen the deviation: its direction may be
+        wrong by half a degree, its scale may drift, and longer windows may tell something else.  A wrong scale of the
+        whole motion leaves no trace in the samples, so that all rests on the length of the translation.
 
         Parameters
         ----------
@@ -278,16 +280,22 @@ class Run:
         if self.observer.covariance is not None:
             claims = np.sqrt(np.maximum(np.diagonal(self.covariance[-1]), 0))
             said = partial(said, claimed=relative_deviation(view, last, claims, known))
-        found = self.information
-        said = partial(said, information=found)
+        found, claimed = self.information, said.keywords.get("claimed")
+        apart = found.disagreement(view, known)
+        widened = math.hypot(found.deviation, apart / 2)
+        said = partial(said, information=replace(found, deviation=widened if apart <= tolerance else found.deviation))
         if not 2 * found.deviation <= tolerance:
             return said("vague" if found.deviation < NOTHING else "hidden")
-        disagreement = found.disagreement(view, known)
-        if disagreement > tolerance:
-            return said("contradicted", disagreement=disagreement)
+        if (drift := max(each.drift for each in (found, *found.longer))) > tolerance / 2:
+            return said("drifting", disagreement=drift)
+        if apart > tolerance:
+            return said("contradicted", disagreement=apart)
+        if 2 * widened > tolerance:
+            return said("vague")
         difference = float(view.relative_error(found.estimate[None], last[None], known)[0])
-        agrees = difference <= tolerance + 2 * found.deviation
-        return said("agrees" if agrees else "differs", difference=difference)
+        if claimed is not None and not 2 * claimed <= tolerance:
+            return said("wide", difference=difference)
+        return said("agrees" if difference + widened <= tolerance else "differs", difference=difference)
 
     @cached_property
     def unobservable_intervals(self) -> list[tuple[float, float]]:

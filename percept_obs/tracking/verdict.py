@@ -65,11 +65,21 @@ VERDICTS = MappingProxyType(
 """Sentences of verdicts by outcome, also of live labs.  Times count from the first sample."""
 
 
-CONTRADICTED = (
-    "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} apart, so "
-    "that the motion is not as it is known"
+BLIND = MappingProxyType(
+    {
+        "contradicted": (
+            "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} "
+            "apart, so that the motion is not as it is known"
+        ),
+        "drifting": (
+            "; do not trust the estimate: the samples tell that the length of your translation drifts by {apart} or "
+            "more during the recording"
+        ),
+        "wide": "; do not trust the estimate: the filter itself is not sure enough of {judged}",
+        "rests": "; this rests on the length of your translation",
+    }
 )
-"""Sentence where samples contradict the motion; live labs, which know the truth, do not need it."""
+"""Sentences of trust that live labs, which know the truth, do not need."""
 
 
 def for_the_page() -> dict[str, Any]:
@@ -100,9 +110,10 @@ class Outcome:
 class Trust:
     """Trust in the last estimate without a truth; its text continues a sentence.
 
-    The kind is "agrees" (with what the samples tell), "differs", "contradicted" (longer windows tell something else, so
-    that the motion is not as it is known), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the
-    estimate is infinitely far away or behind the camera) or "no estimate".  The difference is the estimate's relative
+    The kind is "agrees" (with what the samples tell), "differs", "wide" (the observer claims more than the tolerance),
+    "contradicted" (longer windows tell something else, so that the motion is not as it is known), "drifting" (the scale
+    of the motion drifts), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the estimate is
+    infinitely far away or behind the camera) or "no estimate".  The difference is the estimate's relative
     distance to the information's, and NaN where that is vague or contradicted; `claimed` is the relative standard
     deviation that the observer claims.
     """
@@ -131,12 +142,12 @@ class Trust:
             return VERDICTS[self.kind]
         window, unexcited = self.information.window, self.information.unexcited
         fields |= {"window": number(window), "within": percent(2 * self.information.deviation)}
-        said = (CONTRADICTED if self.kind == "contradicted" else VERDICTS[self.kind]).format(**fields)
+        said = {**VERDICTS, **BLIND}[self.kind].format(**fields)
         if unexcited >= SETTLED_PART * self.length:
             said += VERDICTS["unexcited"].format(begin=number(self.length - unexcited))
         if self.claimed is not None:
             said += VERDICTS["claimed"].format(claimed=percent(2 * self.claimed))
-        return said
+        return said + (BLIND["rests"] if self.kind in ("agrees", "differs", "wide") else "")
 
 
 def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Outcome:
