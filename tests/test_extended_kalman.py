@@ -70,3 +70,16 @@ def test_outputs_may_take_turns_in_any_order():
     np.testing.assert_allclose(
         track(recording, other, ZERO).estimate, track(recording, ekf(BOTH), ZERO).estimate, atol=1e-9
     )
+
+
+def test_noise_of_the_velocities_moves_the_covariance_by_the_interaction_matrix():
+    """The derivative of an image with respect to velocity and angular velocity, as Chaumette prints it."""
+    y1, y2, y3, n_w, n_v = 0.3, -0.2, 0.4, 0.7, 1.3
+    L = np.array([[-y3, 0, y1 * y3, y1 * y2, -1 - y1**2, y2], [0, -y3, y2 * y3, 1 + y2**2, -y1 * y2, -y1]])
+    equations = ekf(BOTH).equations
+    values = {symbol: 0.0 for symbol in (*equations.parameters, *equations.gains, *equations.state)}
+    values |= dict(zip(equations.state[:3], (y1, y2, y3), strict=True))
+    noise = {symbol: n for symbol in equations.gains for n, name in ((n_w, "Q_w"), (n_v, "Q_v")) if symbol.name == name}
+    found = {str(s): float(rate.subs(values | noise)) for s, rate in zip(equations.state, equations.flow, strict=True)}
+    expected = L @ np.diag([n_v] * 3 + [n_w] * 3) @ L.T
+    np.testing.assert_allclose([found["P11"], found["P12"], found["P22"]], expected[[0, 0, 1], [0, 1, 1]], rtol=1e-12)

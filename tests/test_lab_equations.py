@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from percept_obs import PerspectiveSystem, affine, pinhole
+from percept_obs import PerspectiveSystem, affine, pinhole, rigid
 from percept_obs.labs.shared.equations import cascade_equations, equations_of, kalman_equations
 from percept_obs.observers import OBSERVERS, extended_kalman, linear_approximation
 from percept_obs.observers.parts import hats
@@ -37,6 +37,10 @@ def test_the_extended_kalman_filter_in_matrices_is_the_observer(form):
     rate = sp.ImmutableMatrix(form.rate.xreplace(dict(zip(x, estimate, strict=True))))
     hidden_only = [*(0 for _ in form.x1), *(gains["hidden_process_noise"] for _ in form.x2)]
     doubt = sp.ImmutableMatrix(gains["process_noise"] * sp.eye(size) + sp.diag(*hidden_only))
+    moved = PerspectiveSystem(rigid(), form.view).partition(*form.measured)
+    G = moved.rate.jacobian(moved.parameters[:6]).xreplace(dict(zip(x, estimate, strict=True)))
+    noises = [gains["turning_noise"]] * 3 + [gains["velocity_noise"]] * 3
+    doubt += G * sp.diag(*noises) * G.T
     for j, y in enumerate(form.x1):
         c = sp.ImmutableMatrix(sp.eye(size)[:, j])
         R = sp.ImmutableMatrix([[gains["noise_variance"]]])

@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 from distrust_study import FORM, RIGHT, WRONG, drawn, flagged, judged
 from sample_sizes import sampled
+from trust_study import POSES, blindly, posed, shares, trusted_with
+from utias_folder import utias_folder
 
 from percept_obs import Camera, Gaussian, Scenario, ekf, pinhole, record, rigid, track
 from percept_obs.figures import trust
 from percept_obs.observers import OBSERVERS
+from percept_obs.recording.utias import load_utias
 from percept_obs.studies.trust import trust_over_time
 
 STILL = (0.0, 0.0, 0.0)
@@ -93,3 +96,42 @@ def test_what_makes_no_sense_is_refused():
     ):
         with pytest.raises(ValueError, match=message):
             ask()
+
+
+@pytest.mark.slow
+def test_with_errors_of_the_poses_few_wrong_ones_are_trusted_and_most_right_ones_are():
+    """400 runs with ALL_SAMPLES=1, of all observers, with both outputs and one."""
+    found = [trusted_with(seed, poses) for poses in POSES for seed in range(200, 200 + sampled(8, 100))]
+    far_off, off, flagged_right = shares(found)
+    assert far_off <= 0.01
+    assert off <= 0.05
+    assert flagged_right <= 0.2
+
+
+@pytest.mark.slow
+def test_on_real_tracks_few_wrong_ones_are_trusted():
+    start = {"y3": 1 / 1.8}
+    observer = ekf(FORM, noise_variance=7e-6, turning_noise=3.5e-4, measured_variance=1e-4, hidden_variance=1)
+    tracks = load_utias(utias_folder())[:: sampled(4, 1)]
+    parts = [each.between(each.time[0], each.time[0] + length) for each in tracks for length in (1, 2, 3)]
+    far_off, off, _ = shares([blindly(track(part, observer, start, language="numba")) for part in parts])
+    assert far_off <= 0.01
+    assert off <= 0.05
+
+
+def test_a_scale_that_drifts_and_a_claim_that_is_wide_are_told():
+    recording, known, _ = posed(0, "drifting")
+    observer = FILTER.with_gains(noise_variance=recording.noise_variance)
+    error, drifting = blindly(track(recording, observer, {"y3": 0.3}, believed=known), motion=known)
+    assert error > 0.2
+    assert drifting.kind == "drifting"
+    assert drifting.disagreement > 0.2
+    assert "the length of your translation drifts by" in str(drifting)
+    good = blindly(track(recording, observer, {"y3": 0.3}))[1]
+    assert good.kind == "agrees"
+    assert str(good).endswith("; this rests on the length of your translation")
+    unsure = observer.with_gains(velocity_noise=0.1)
+    wide = blindly(track(recording, unsure, {"y3": 0.3}))[1]
+    assert wide.kind == "wide"
+    assert 2 * wide.claimed > 0.1
+    assert "is not sure enough of the distance" in wide.sentence

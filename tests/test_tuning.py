@@ -64,6 +64,15 @@ def test_a_refusal_is_told_in_words():
     assert set(line.drop("remark")) == {"–"}
 
 
+def test_the_table_says_from_when_on_an_observer_is_usable():
+    """An error that grows again does not count before."""
+    table = reported()
+    label = table["observer"].iloc[0]
+    rows = table[table["observer"] == label].iloc[[0, 1, 1]].assign(after=[1.0, 2.0, 3.0])
+    for errors, said in (((0.2, 0.1, 0.05), "2 s"), ((0.05, 0.2, 0.3), "not within 3 s"), ((0.01, 0.02, 0.1), "1 s")):
+        assert side_by_side(rows.assign(nine_in_ten=errors)).loc[label, "usable after"] == said
+
+
 def test_batch_estimates_stand_beside_the_observers():
     table = reported(batch={"least squares": moving_window_least_squares}).set_index(["observer", "after"])
     errors = relative_distance_errors([moving_window_least_squares(recording) for recording in REPORTING], 2)

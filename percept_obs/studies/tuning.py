@@ -20,6 +20,7 @@ from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.following import DoesNotFit, StepTooLong
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import TOLERANCE
 from percept_obs.validation import bar, checked
 
 __all__ = ["choose_and_report", "side_by_side"]
@@ -252,7 +253,8 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        A column for each reference and time, with the median error and in brackets the 90 % quantile; behind
+        A column for each reference and time, with the median error and in brackets the 90 % quantile; usable after (the
+        first of the times from which on the 90 % quantile of the first reference is within `TOLERANCE`); behind
         (recordings, at the time with the most), reset, diverged, claimed and trusted if runs were judged, cost (us for
         a second of data), and a remark: the gains, those at an edge of their candidates, steps that are too long, or
         why the observer cannot follow.
@@ -268,7 +270,7 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
     >>> seen = [record(scenarios.ma2005_eq35(), 3, Camera(0.05, Uniform(0.01)), seed) for seed in range(2)]
     >>> side_by_side(choose_and_report(seen[:1], seen[1:], form, track, {ibo: [{}]}, after=[1.0])).columns.tolist()
-    ['truth 1 s', 'behind', 'reset', 'diverged', 'cost', 'remark']
+    ['truth 1 s', 'usable after', 'behind', 'reset', 'diverged', 'cost', 'remark']
     """
     import pandas as pd
 
@@ -284,9 +286,18 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
             else f"{row.median:.1%} ({row.nine_in_ten:.0%})".replace("inf%", "none")
         )
 
+    def usable(rows: pd.DataFrame) -> str:
+        rows = rows[rows["reference"] == rows["reference"].iloc[0]].sort_values("after")
+        late = np.flatnonzero(~(rows["nine_in_ten"] <= TOLERANCE))  # errors that grow again do not count before
+        begin = late[-1] + 1 if len(late) else 0
+        last = f"not within {rows['after'].iloc[-1]:g} s"
+        return "–" if rows["refusal"].any() else f"{rows['after'].iloc[begin]:g} s" if begin < len(rows) else last
+
     def line(rows: pd.DataFrame) -> dict[str, str]:
         first = rows.iloc[0]
         found = {f"{row.reference} {row.after:g} s": error(row) for row in rows.itertuples()}
+        if not blind:
+            found["usable after"] = usable(rows)
         for name in ("behind", "reset", "diverged"):
             found[name] = "–" if first.refusal else f"{rows[name].max():.0f}"
         if blind:

@@ -286,7 +286,7 @@ class Run:
         said = partial(said, information=replace(found, deviation=widened if apart <= tolerance else found.deviation))
         if not 2 * found.deviation <= tolerance:
             return said("vague" if found.deviation < NOTHING else "hidden")
-        if (drift := max(each.drift for each in (found, *found.longer))) > tolerance / 2:
+        if (drift := (found, *found.longer)[-1].drift) > tolerance / 2:
             return said("drifting", disagreement=drift)
         if apart > tolerance:
             return said("contradicted", disagreement=apart)

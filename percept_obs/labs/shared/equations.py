@@ -115,16 +115,24 @@ def _kalman_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = 
     # f names the system's rate as a whole, (w^T x2 + phi, g)
     rate, y = sp.MatrixSymbol("f", n, 1), sp.MatrixSymbol("y", 1, 1)
     noises = (("process_noise", sp.Identity(n)), ("hidden_process_noise", sp.MatrixSymbol("I_2", n, n)))
-    Q = sum((letters[q] * ones for q, ones in noises if letters[q] not in zero), sp.ZeroMatrix(n, n))
+    moved = (("turning_noise", sp.MatrixSymbol("G_w", n, 3)), ("velocity_noise", sp.MatrixSymbol("G_v", n, 3)))
+    densities = [*noises, *((q, G * G.T) for q, G in moved)]
+    Q = sum((letters[q] * ones for q, ones in densities if letters[q] not in zero), sp.ZeroMatrix(n, n))
     R = sp.MatrixSymbol(letters["noise_variance"].name, 1, 1)
     rows = kalman_equations(x, P, F, rate, c, y, Q, R)
     at_estimate = sp.Function("f")(sp.Symbol("xhat"))
     ones = formula(sp.Symbol("I_2"), sp.diag(0, 1))
+    jacobians = [
+        each
+        for q, G in moved
+        for each in ("with", formula(G, sp.Derivative(at_estimate, sp.Symbol(G.name[-1]))))
+        if letters[q] not in zero
+    ]
     hidden = [] if letters["hidden_process_noise"] in zero else ["with", ones, "for measured and hidden"]
     start = sp.diag(letters["measured_variance"], letters["hidden_variance"])
     return [
         row(formula(dotted(x), at_estimate), "with", formula(F, sp.Derivative(at_estimate, sp.Symbol("xhat")))),
-        row(formula(dotted(P), rows["P'"], letters), *hidden),
+        row(formula(dotted(P), rows["P'"], letters), *hidden, *jacobians),
         row("at a sample of an output", formula("<mi>y</mi>", c.T * sp.MatrixSymbol("x", n, 1))),
         row(formula("<mi>e</mi>", rows["e"]), ",", formula("<mi>s</mi>", rows["s"], letters)),
         row(formula("<mi>k</mi>", rows["k"]), ",", formula(after(x), rows["x+"]), ",", formula(after(P), rows["P+"])),
