@@ -247,10 +247,11 @@ class Run:
         """Judge the last estimate without a truth.
 
         It is trusted where the samples by themselves tell what is sought to within the tolerance, with two standard
-        deviations, the observer claims no more than that, and the estimate's distance to the least-squares estimate
-        with one standard deviation is within it.  Doubts of the known motion widen the deviation: its direction may be
-        wrong by half a degree, its scale may drift, and longer windows may tell something else.  A wrong scale of the
-        whole motion leaves no trace in the samples, so that all rests on the length of the translation.
+        deviations, and the observer claims no more than that.  The squares of one standard deviation and of the
+        distance to the least-squares estimate must add up to no more, either.  Doubts of the known motion widen the
+        deviation: its direction may be wrong by half a degree, its scale may drift, and longer windows may tell
+        something else.  A wrong scale of the whole motion leaves no trace in the samples, so that all rests on the
+        length of the translation.
 
         Parameters
         ----------
@@ -295,7 +296,8 @@ class Run:
         difference = float(view.relative_error(found.estimate[None], last[None], known)[0])
         if claimed is not None and not 2 * claimed <= tolerance:
             return said("wide", difference=difference)
-        return said("agrees" if difference + widened <= tolerance else "differs", difference=difference)
+        agrees = math.hypot(difference, widened) <= tolerance
+        return said("agrees" if agrees else "differs", difference=difference)
 
     @cached_property
     def unobservable_intervals(self) -> list[tuple[float, float]]:
