@@ -20,15 +20,15 @@ FIRST_NOTEBOOK = "00_start.ipynb"
 
 def copy_notebooks(directory: Path, readers: str = "students") -> None:
     """Copy the notebooks for their readers into a directory, which may be new, and leave whatever is there as it is."""
-    names = sorted(entry.name for entry in notebooks().iterdir() if entry.name.endswith(".ipynb"))
+    shipped = notebooks()
     directory.mkdir(parents=True, exist_ok=True)
-    for name in names:
+    for name, notebook in shipped.items():
         target = directory / name
         if target.exists():
             print(f"kept    {target}")
         else:
-            copy = COPIES[readers](json.loads((notebooks() / name).read_bytes()))
-            write_whole(target, f"{json.dumps(copy, indent=1, ensure_ascii=False)}\n".encode())
+            copy = json.dumps(COPIES[readers](notebook), indent=1, ensure_ascii=False)
+            write_whole(target, f"{copy}\n".encode())
             print(f"copied  {target}")
 
 
@@ -67,8 +67,7 @@ def site(options: argparse.Namespace) -> int:
     from percept_obs.validation import needed
 
     _refuse_a_file(options.directory)
-    found = sorted((entry for entry in notebooks().iterdir() if entry.name.endswith(".ipynb")), key=lambda e: e.name)
-    copies = {entry.name: COPIES[options.readers](json.loads(entry.read_bytes())) for entry in found}
+    copies = {name: COPIES[options.readers](notebook) for name, notebook in notebooks().items()}
     try:
         needed("site", *NEEDS)
         build(options.directory, copies, exam=options.readers == "teachers", address=options.address)

@@ -24,7 +24,7 @@ def shipped(tmp_path, monkeypatch):
     folder.mkdir()
     for name in ("00_start.ipynb", "01_next.ipynb", "not_a_notebook.txt"):
         (folder / name).write_text(shipped_as(name))
-    monkeypatch.setattr(cli, "notebooks", lambda: folder)
+    monkeypatch.setattr("percept_obs.exercises.models.FOLDER", folder)
     return folder
 
 
@@ -105,7 +105,7 @@ def test_a_file_is_not_a_folder(launches, tmp_path, capsys, command, below, reas
 
 
 def test_a_package_without_notebooks_says_so(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(cli, "notebooks", lambda: tmp_path / "gone")
+    monkeypatch.setattr("percept_obs.exercises.models.FOLDER", tmp_path / "gone")
     assert cli.main(["lab", str(tmp_path / "mine")]) == 2
     assert "gone" in capsys.readouterr().err
     assert not (tmp_path / "mine").exists()

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cache
 from hashlib import sha256
 from importlib import resources
-from importlib.resources.abc import Traversable
 from pathlib import Path
 from types import EllipsisType
 from typing import Any
 
 from percept_obs.exercises.answers import Attempt
+
+_INSTALLED = resources.files("percept_obs") / "notebooks"
+FOLDER = _INSTALLED if _INSTALLED.is_dir() else Path(__file__).parents[2] / "notebooks"
+"""Folder of the notebooks: inside an installed package, beside it in a checkout."""
 
 FOLDED = re.compile(r"<details><summary>.*?</summary>(.*?)</details>", re.DOTALL)
 """An answer as a notebook folds it."""
@@ -23,10 +26,10 @@ LEAST = 3
 """Words of an answer."""
 
 
-def notebooks() -> Traversable:
-    """Return the folder of the notebooks: inside an installed package, beside it in a checkout."""
-    installed = resources.files("percept_obs") / "notebooks"
-    return installed if installed.is_dir() else Path(__file__).parents[2] / "notebooks"
+def notebooks() -> dict[str, Any]:
+    """Return the notebooks by the names of their files, in order."""
+    files = (each for each in FOLDER.iterdir() if each.name.endswith(".ipynb"))
+    return {file.name: json.loads(file.read_bytes()) for file in sorted(files, key=lambda file: file.name)}
 
 
 def answers_in(cell: Mapping[str, Any]) -> list[str]:
@@ -77,12 +80,6 @@ def model_answer(mine: str | EllipsisType, key: str) -> Attempt:
 
 @cache
 def _answers() -> dict[str, str]:
-    return {key_of(answer): answer for answer in _all()}
-
-
-def _all() -> Iterator[str]:
-    folder = notebooks()
-    for entry in folder.iterdir() if folder.is_dir() else ():
-        if entry.name.endswith(".ipynb"):
-            for cell in json.loads(entry.read_bytes())["cells"]:
-                yield from answers_in(cell)
+    """Model answers of all notebooks by their keys."""
+    cells = (cell for notebook in notebooks().values() for cell in notebook["cells"])
+    return {key_of(answer): answer for cell in cells for answer in answers_in(cell)}

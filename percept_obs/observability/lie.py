@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import sympy as sp
+from numpy.linalg import matrix_rank
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, vectorised
@@ -76,7 +77,9 @@ class Codistribution:
 
     def lost_at(self, values: Mapping[sp.Symbol, float]) -> Array:
         """Directions that no order shows, orthonormal, shape (n, q); see `ranks_at`."""
-        return _kernel(self._at(values).rows[0])
+        from scipy.linalg import null_space
+
+        return null_space(self._at(values).rows[0], rcond=NEGLIGIBLE)
 
     def along(self, recording: Recording) -> LieRanks:
         """Ranks along the truth of a recording."""
@@ -153,11 +156,9 @@ class LieRanks:
     @cached_property
     def ranks(self) -> Array:
         """Rank with the orders up to 0, up to 1, and so on, shape (K, orders + 1)."""
-        m, found = len(self.form.x1), []
-        for count in range(m, self.rows.shape[1] + 1, m):
-            singular = np.linalg.svd(self.rows[:, :count], compute_uv=False)
-            found.append((singular > NEGLIGIBLE * np.maximum(singular[:, :1], 1e-300)).sum(axis=1))
-        return np.stack(found, axis=1)
+        m = len(self.form.x1)
+        counts = range(m, self.rows.shape[1] + 1, m)
+        return np.stack([matrix_rank(self.rows[:, :count], rtol=NEGLIGIBLE) for count in counts], axis=1)
 
     @cached_property
     def smallest(self) -> Array:
@@ -177,7 +178,9 @@ class LieRanks:
 
     def lost(self) -> tuple[str, ...]:
         """Directions that are lost at the weakest sample, in words."""
-        return in_words(_kernel(self.rows[self.weakest]), names_of(self.form))
+        from scipy.linalg import null_space
+
+        return in_words(null_space(self.rows[self.weakest], rcond=NEGLIGIBLE), names_of(self.form))
 
 
 @checked
@@ -285,9 +288,3 @@ def lie_ranks(recording: Recording, system: System, orders: int | None = None) -
         rate = sp.ImmutableMatrix(form.rate.xreplace({s: sp.Float(v) if v else sp.S.Zero for s, v in numbers.items()}))
         form = PartitionedSystem(form.x1, form.x2, rate, (), form.coordinates, form.view)
     return lie_derivatives(form, orders, varying).along(recording)
-
-
-def _kernel(rows: Array) -> Array:
-    """Directions that scaled rows of shape (q, n) do not show, orthonormal, shape (n, number of directions)."""
-    _, singular, right = np.linalg.svd(rows)
-    return np.asarray(right[int((singular > NEGLIGIBLE * max(singular[0], 1e-300)).sum()) :].T)

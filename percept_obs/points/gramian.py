@@ -16,7 +16,6 @@ from percept_obs.points.conditions import conditions
 from percept_obs.points.form import PointsForm, points_form
 from percept_obs.points.information import transitions
 from percept_obs.points.luenberger import LuenbergerObserver
-from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.recording import Recording
 from percept_obs.system.signal import slack_of
 from percept_obs.validation import checked
@@ -262,7 +261,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
     check_window(recording, window, holds_samples=True)
     time, images, slack = recording.time, _true_images(recording), slack_of(recording.time)
     every = slice(None, None, max(1, len(time) // PARTS))
-    if P.computed or not conditions(observer, time[every], images[every], _over(P, time[every])).printed_holds:
+    if P.computed or not conditions(observer, time[every], images[every], P.at(time[every])).printed_holds:
         raise ValueError("the bound rests on (15): give a constant or scheduled P with A^T P + P A + P' <= 0")
     begins = time[0] + window * np.arange(int((time[-1] - time[0] + slack) / window))
     seen, feedback = np.empty(len(begins)), np.empty(len(begins))
@@ -275,7 +274,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         Phi = np.stack([*accumulate(steps, lambda Phi, step: step @ Phi, initial=np.eye(form.states))])
         rows = form.rows(images[inside])
         shown = np.sqrt(shares)[:, None, None] * rows @ Phi
-        weights = _over(P, at)
+        weights = P.at(at)
         corrected = (
             np.linalg.inv(Phi) @ np.linalg.inv(weights) @ np.swapaxes(rows, 1, 2) * np.sqrt(shares)[:, None, None]
         )
@@ -289,12 +288,6 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         hidden = operator * later
         feedback[k] = np.sqrt(np.linalg.eigvalsh(hidden.T @ hidden)[-1])  # the norm, faster than by an SVD
     return DecayBound(begins, np.maximum(seen, 0.0), feedback, window)
-
-
-def _over(P: LyapunovMatrix, times: Array) -> Array:
-    """Values of a given P at each time, shape (T, n, n)."""
-    values = P.at(times)
-    return np.broadcast_to(values, (len(times), *values.shape[1:]))
 
 
 def _true_images(recording: Recording) -> Array:
