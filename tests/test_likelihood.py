@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 from examples import BOTH, ZERO
 from sample_sizes import sampled
-from tuning_study import SCENARIOS, both_ways
+from trust_study import posed
+from tuning_study import RIGID, SCENARIOS, both_ways
+from utias_folder import utias_folder
 
 from percept_obs import Camera, Gaussian, ekf, ibo, record, scenarios, track
+from percept_obs.recording.utias import load_utias
 from percept_obs.studies.likelihood import log_likelihood, tune_by_likelihood
 
 SIGMA = 0.01
@@ -44,6 +47,47 @@ def test_claims_hold_and_errors_are_hardly_larger_than_those_of_tuning_by_error(
     assert 0.3 < likely.nees < 0.7
     assert likely.error <= 1.15 * by_error.error
     assert abs(np.log(by_error.nis)) > np.log(2)  # what the median error does to honesty
+
+
+DOUBTS = {"noise_variance": (1e-7, 1e-3), "turning_noise": (1e-9, 1e-2), "velocity_noise": (1e-9, 1e-1)}
+
+
+def claims(choosing, reporting, follow, start_variance):
+    """Mean NIS and NEES over what is expected, of a filter tuned on other recordings; the first second is left out."""
+    observer = ekf(RIGID, measured_variance=1e-4, hidden_variance=start_variance)
+    tuned = tune_by_likelihood(choosing, observer, DOUBTS, follow).observer
+    runs = [follow(each, tuned) for each in reporting]
+    return [
+        np.mean([np.nanmean(of(run)[run.elapsed >= 1]) for run in runs])
+        for of in (lambda run: run.nis / 2, lambda run: run.nees())
+    ]
+
+
+@pytest.mark.slow
+def test_noise_of_the_velocities_explains_innovations_and_errors_with_noisy_poses():
+    """Each recording has another noise of its poses, so that no setting is right for all."""
+    believed = {}
+    for seed in range(sampled(12, 36)):
+        recording, known, _ = posed(seed, "noisy", sigma=0.002)
+        believed[recording] = known
+    recordings = [*believed]
+    third = len(recordings) // 3
+    nis, nees = claims(
+        *(recordings[:third], recordings[third:]),
+        lambda r, o: track(r, o, {"y3": 0.3}, believed=believed[r], language="numba"),
+        0.1,
+    )
+    assert 0.5 < nis < 2
+    assert 0.5 < nees < 2
+
+
+@pytest.mark.slow
+def test_noise_of_the_velocities_explains_innovations_and_errors_on_real_tracks():
+    tracks = load_utias(utias_folder())
+    start = {"y3": 1 / 1.8}
+    nis, nees = claims(tracks[::8], tracks[1::2], lambda r, o: track(r, o, start, language="numba"), 1.0)
+    assert 0.5 < nis < 2
+    assert 0.5 < nees < 2
 
 
 @pytest.mark.slow
