@@ -74,9 +74,11 @@ def rates(motion, times):
 
 def spoiled(recordings, faults, draw):
     """The recordings as somebody brings them who made some mistakes, those of the images first."""
-    for fault in sorted(faults, key=ORDER.index):
-        recordings = _spoiled(recordings, fault, draw)
-    return [replace(each, signal=None, truth=None) for each in recordings]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for fault in sorted(faults, key=ORDER.index):
+            recordings = _spoiled(recordings, fault, draw)
+        return [replace(each, signal=None, truth=None) for each in recordings]
 
 
 def _spoiled(recordings, fault, draw):

@@ -7,6 +7,7 @@ from functools import cache, partial
 import numpy as np
 import pytest
 import sympy as sp
+from sample_sizes import sampled
 
 from percept_obs import (
     Camera,
@@ -190,7 +191,8 @@ def largest(ask):
     """Largest deviation of what is asked for in any unit from what it is in metres."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return max(deviation(ask(1.0), ask(unit)) for unit in UNITS.values())
+        metres = ask(1.0)
+        return max(deviation(metres, ask(unit)) for unit in sampled([UNITS["feet"]], UNITS.values()))
 
 
 def forms_of(make):

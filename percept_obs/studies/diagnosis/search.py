@@ -28,6 +28,9 @@ CLEARLY = 10.0
 WORSE = 2.0
 """Ratio of what two explanations leave from which on a mix-up is named where neither explains everything."""
 
+MOST_LEFT = 0.1
+"""Share of the samples' own spread that such a mix-up may leave at most; a fit that leaves more has failed."""
+
 ALIKE = 1.01
 """Ratio of what two explanations leave up to which the motion cannot tell them apart."""
 
@@ -154,7 +157,8 @@ def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> 
         return best
     better = sorted((each for each in others if each.typical < first.typical), key=lambda each: each.typical)
     for other in (_joint(each, keys) for each in better[:TRIED]):
-        if _explained(other, noise) or WORSE * other.typical < best.typical:
+        moved = float(np.median([track.spread for track in other.tracks]))
+        if _explained(other, noise) or WORSE * other.typical < min(best.typical, WORSE * MOST_LEFT * moved):
             best = min(best, other, key=lambda each: (not _explained(each, noise), each.typical))
     return best
 

@@ -86,6 +86,12 @@ class Track:
         return outside, within
 
     @cached_property
+    def spread(self) -> float:
+        """Root mean square of the samples about their mean."""
+        pairs = zip(self.outputs.T, self.used.T, strict=True)
+        return float(np.sqrt(np.mean([np.var(column[used]) for column, used in pairs if used.any()])))
+
+    @cached_property
     def rows(self) -> Array:
         """Vertical place in the image of each sample, by which a rolling shutter is late; 0 where it is not known."""
         return np.nan_to_num(self.outputs[:, 1]) if self.outputs.shape[1] > 1 else np.zeros(len(self.time))
@@ -267,7 +273,8 @@ def guess(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> tuple[Array,
         times = np.clip(track.time[rows] - float(number[OFFSET][0]), way.times[0], way.times[-1])
         rays = np.stack(ray(*(track.outputs[rows] / (1 + float(number[FOCAL][0]))).T), axis=-1)
         rays /= np.linalg.norm(rays, axis=1, keepdims=True)
-        maps, weight = way.spline(times), np.ones(len(rows))
+        maps = way.spline(times)
+        weight = np.linalg.norm(maps, axis=(1, 2))
         across = np.cross(rays[:, :, None], maps, axis=1)
         for _ in range(REWEIGHTED):  # by the distance of each position, so that angles are left and not lengths
             vectors = np.linalg.svd((across / weight[:, None, None]).reshape(-1, 4), full_matrices=False)[2]
