@@ -224,8 +224,10 @@ def test_the_table_is_shown_as_text_and_in_a_notebook():
     markdown = found._repr_markdown_()
     assert "| (20) as printed | does an instant show anything hidden? | yes |" in markdown
     assert markdown.count("\n| ") == 8
+    found = how_observable(record(scenarios.ma2005_eq35(), 3, CAMERA), ONE)
     largest, printed = found.instant.eigenvalues[:, -1], found["(20) as printed"]
     assert (printed.value, printed.time) == (largest.min(), found.recording.elapsed[largest.argmin()])
+    assert largest.max() > 1.1 * largest.min()
 
 
 def test_lost_samples_show_nothing():
