@@ -14,7 +14,7 @@ from percept_obs.figures import base, curves, describe, image, look
 from percept_obs.figures.base import Array, Drawing, canvas, canvases, figure, legend_above, rows
 from percept_obs.observability.maps import BoundMap
 from percept_obs.observability.measures import Observability
-from percept_obs.observability.windows import Excitation
+from percept_obs.observability.windows import Excitation, Windows
 from percept_obs.points.gramian import Gramian
 from percept_obs.studies.consistency import Consistency
 from percept_obs.studies.fields import FieldBound
@@ -156,8 +156,8 @@ def _draw_zero_set(ax: Axes, found: BoundMap, threshold: float) -> str:
     if len(found.measured) == 1:
         return image.draw_blind_lines(ax, system, *found.measured)
     ax.plot(*centre, label="focus of expansion", **look.FOCUS)
-    radius = image.blind_radius(system, found.measured, threshold)
     told = f"The focus of expansion is at {describe.place(centre)}."
+    radius = image.blind_radius(system, found.measured, threshold)
     if not np.isfinite(radius):
         return told
     name = f"$|w| = {threshold:g}$"
@@ -191,11 +191,10 @@ def excitation(
     names = base.labels_for(labels, [f"{window} window" for window in windows])
     ax = canvas(ax, 3.2)
     yield "Smallest eigenvalue of the integral of w w^T over a window, on a logarithmic axis."
-    for number, (one, name) in enumerate(zip(found, names, strict=True)):
-        time, shown = _draw_smallest(ax, one, name, number)
-        yield f"{name}: {_annotate_least(ax, one, time, shown)}"
+    low, high = _draw_smallest(ax, found, names)
+    for one, name in zip(found, names, strict=True):
+        yield f"{name}: {_annotate_least(ax, one)}"
     # A fifth of the axis stays free below, for what is written there.
-    low, high = _log_scale(ax, found)
     ax.set_ylim(low * min(0.3, (low / high) ** 0.2), 2 * high)
     ax.set_xlabel(f"end of the {windows[0]} window (s)" if len(set(windows)) == 1 else "end of the window (s)")
     ax.set_ylabel(r"smallest eigenvalue of $\int w\,w^{\mathsf{T}}dt$")
@@ -226,10 +225,8 @@ def gramian(found: Gramian | Sequence[Gramian], labels: Sequence[str] | None = N
     names = base.labels_for(labels, [f"{one.window:g} s window" for one in found])
     ax = canvas(ax, 3.2)
     yield "Smallest eigenvalue of the Gramian over the beginning of its window, on a logarithmic axis."
-    for number, (one, name) in enumerate(zip(found, names, strict=True)):
-        _draw_smallest(ax, one, name, number)
-        yield f"{name}: {one.verdict()}."
-    low, high = _log_scale(ax, found)
+    low, high = _draw_smallest(ax, found, names)
+    yield from (f"{name}: {one.verdict()}." for one, name in zip(found, names, strict=True))
     ax.set_ylim(low / 3, 3 * high)
     ax.set(xlabel="beginning of the window (s)", ylabel="smallest eigenvalue")
     legend_above(ax)
@@ -272,29 +269,25 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Drawing:
     return [ax]
 
 
-def _draw_smallest(ax: Axes, one: Excitation | Gramian, name: str, number: int) -> tuple[float, float]:
-    """Draw smallest eigenvalues with their least one; return its time and the value at which it is drawn."""
-    _draw(ax, one.time, one.smallest, number, name)
-    at, own = int(np.nanargmin(one.smallest)), look.style(number)
-    shown = max(float(one.smallest[at]), curves.ROUND_OFF)
-    ax.plot(one.time[at], shown, color=own["color"], marker=own["marker"])
-    return float(one.time[at]), shown
-
-
-def _log_scale(ax: Axes, found: Sequence[Excitation | Gramian]) -> tuple[float, float]:
-    """Let the axis be logarithmic; return the smallest and the largest value that is drawn."""
+def _draw_smallest(ax: Axes, found: Sequence[Windows], names: Sequence[str]) -> tuple[float, float]:
+    """Draw smallest eigenvalues, each least one marked; return the smallest and the largest value that is drawn."""
+    for number, (one, name) in enumerate(zip(found, names, strict=True)):
+        _draw(ax, one.time, one.smallest, number, name)
+        at = np.nanargmin(one.smallest)
+        ax.plot(one.time[at], max(one.smallest[at], curves.ROUND_OFF), **look.style(number))
     ax.set_yscale("log")
     ax.minorticks_off()
     every = np.maximum(describe.finite(np.concatenate([one.smallest for one in found])), curves.ROUND_OFF)
     return float(every.min()), float(every.max())
 
 
-def _annotate_least(ax: Axes, one: Excitation, at: float, shown: float) -> str:
+def _annotate_least(ax: Axes, one: Excitation) -> str:
     """Write the least value beside its mark, and say it with the largest one and with what is not drawn."""
-    least = np.nanmin(one.smallest)
+    least, at = np.nanmin(one.smallest), one.time[np.nanargmin(one.smallest)]
     late = at > one.time[0] + 0.85 * (one.time[-1] - one.time[0])
     ha, right = ("right", 4) if late else ("center", 0)
-    ax.annotate(f"least {least:.2g}", (at, shown), (right, -7), textcoords="offset points", ha=ha, va="top")
+    place = (at, max(least, curves.ROUND_OFF))
+    ax.annotate(f"least {least:.2g}", place, (right, -7), textcoords="offset points", ha=ha, va="top")
     clipped, missing = int((one.smallest < curves.ROUND_OFF).sum()), int(np.isnan(one.smallest).sum())
     return describe.joined(
         f"the least is {least:.3g}, at {at:.3g} s, the largest {np.nanmax(one.smallest):.3g}.",

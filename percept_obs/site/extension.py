@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from posixpath import dirname
 from typing import Any
 
@@ -15,31 +16,18 @@ def setup(app: Any) -> dict[str, bool]:
     app.connect("autodoc-process-docstring", _keep_bars)
     app.connect("html-page-context", _let_keys_scroll)
     app.connect("html-page-context", describe)
-    app.connect("html-page-context", _SharedContents(), priority=400)  # before the theme writes them
+    app.connect("html-page-context", _share_contents, priority=400)  # before the theme writes them
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
-class _SharedContents:
-    """Lets pages of a folder that stand outside of the contents share these, or a third of the writing goes into them.
+def _share_contents(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    """Let pages of a folder that stand outside of the contents share these, or a third of the writing goes into them.
 
     The contents differ by the folder that their links begin in, and by the page that they mark, of which there is none.
     """
-
-    def __init__(self) -> None:
-        self.made: dict[tuple[Any, ...], str] = {}
-
-    def __call__(self, app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
-        if "orphan" not in app.env.metadata.get(page, {}):
-            return
-        make, folder = context["toctree"], dirname(page)
-
-        def toctree(**options: Any) -> str:
-            key = (folder, *sorted(options.items()))
-            if key not in self.made:
-                self.made[key] = make(**options)
-            return self.made[key]
-
-        context["toctree"] = toctree
+    if "orphan" in app.env.metadata.get(page, {}):
+        made = vars(app).setdefault("contents_by_folder", {})
+        context["toctree"] = made.setdefault(dirname(page), cache(context["toctree"]))
 
 
 def mathml(latex: str, display: str) -> str:
