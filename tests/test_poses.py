@@ -170,7 +170,7 @@ def test_velocities_are_drawn_and_told():
     fewer = poses(TIME[::2]).path()
     for wrong, message in (
         ({}, "paths are needed"),
-        ({"a": 1}, "paths are needed"),
+        ({"a": 1}, "expected a mapping from text to a CameraPath"),
         ({"a": exact, "b": fewer}, "times"),
     ):
         with pytest.raises(ValueError, match=message):
