@@ -36,10 +36,7 @@ def lab(options: argparse.Namespace) -> int:
     """Copy the notebooks and open the first one in JupyterLab."""
     directory: Path = options.directory
     _refuse_a_file(directory)
-    try:
-        copy_notebooks(directory, options.readers)
-    except OSError as error:
-        raise _Mistake(f"cannot copy the notebooks: {error}") from None
+    copy_notebooks(directory, options.readers)
     if options.copy_only:
         return 0
     if util.find_spec("jupyterlab") is None:
@@ -81,8 +78,8 @@ def check(options: argparse.Namespace) -> int:
     from percept_obs.papers import find, judge, page, report
 
     ledgers = find(options.places, options.paper)
-    if options.html and options.html.is_dir():
-        raise _Mistake(f"cannot write the page: {options.html} is a folder; name a file")
+    if options.html and (options.html.is_dir() or not options.html.parent.is_dir()):
+        raise _Mistake(f"cannot write the page to {options.html}; name a file, in a folder that is there")
     began = perf_counter()
     held = judge(ledgers)
     if options.places:
@@ -92,10 +89,7 @@ def check(options: argparse.Namespace) -> int:
     count = sum(len(ledger.entries) for ledger in ledgers)
     print(f"\n{count} judged in {perf_counter() - began:.1f} s")
     if options.html:
-        try:
-            write_whole(options.html, page(ledgers).encode())
-        except OSError as error:
-            raise _Mistake(f"cannot write the page: {error}") from None
+        write_whole(options.html, page(ledgers).encode())
     return 0 if held else 1
 
 
@@ -136,20 +130,14 @@ def sweep(options: argparse.Namespace) -> int:
     from percept_obs.studies.sweep import sweep
     from percept_obs.validation import needed
 
-    try:
-        needed("cluster", "xarray", "zarr", *(("distributed",) if options.scheduler else ()))
-        if options.scheduler:
-            from distributed import Client
+    needed("cluster", "xarray", "zarr", *(("distributed",) if options.scheduler else ()))
+    connected: Any = nullcontext()
+    if options.scheduler:
+        from distributed import Client
 
-            connected: Any = Client(options.scheduler)
-        else:
-            connected = nullcontext()
-        with connected as client:
-            print(sweep(options.file, client))
-    except OSError as error:
-        raise _Mistake(f"cannot read the file or reach the cluster: {error}") from None
-    except ModuleNotFoundError as error:
-        raise _Mistake(str(error)) from None
+        connected = Client(options.scheduler)
+    with connected as client:
+        print(sweep(options.file, client))
     return 0
 
 
@@ -178,11 +166,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "help": "students' copies hold the exercises and no solution, teachers' hold all (default: %(default)s)",
     }
     add = command(lab, "open the notebooks in JupyterLab")
-    here, copies = (
-        Path("percept_obs_notebooks"),
-        "where your copies live (default: ./%(default)s); nothing is overwritten",
-    )
-    add("directory", nargs="?", type=Path, default=here, metavar="DIR", help=copies)
+    copies = "where your copies live (default: ./%(default)s); nothing is overwritten"
+    add("directory", nargs="?", type=Path, default=Path("percept_obs_notebooks"), metavar="DIR", help=copies)
     add("--for", **readers)
     add("--copy-only", action="store_true", help="copy the notebooks, do not open them")
     add("--no-browser", action="store_true", help="start JupyterLab without a browser")
@@ -190,9 +175,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add = command(site, "write the course as pages")
     add("directory", type=Path, metavar="DIR", help="folder of the pages")
     add("--for", **readers)
-    add(
-        "--address", default="", metavar="URL", help="where the pages will stand, for links to themselves and a sitemap"
-    )
+    stand = "where the pages will stand, for links to themselves and a sitemap"
+    add("--address", default="", metavar="URL", help=stand)
 
     add = command(check, "judge the papers' equations")
     add("places", nargs="*", metavar="PLACE", help='such as "(38)", 38 or "figure 3" (default: all)')
@@ -213,7 +197,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         return options.run(options)
-    except ValueError as error:
+    except (ValueError, OSError, ModuleNotFoundError) as error:
         print(f"percept-obs: {error}", file=sys.stderr)
         return getattr(error, "code", 2)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from threading import Lock
 
 import numpy as np
@@ -16,6 +16,7 @@ from percept_obs.compile.kernels import Language
 from percept_obs.compile.machine_code import machine_code
 
 _COMPILING = Lock()
+_contiguous = partial(np.ascontiguousarray, dtype=float)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +65,6 @@ def run_batch(loop: BatchLoop, batch: Batch, tolerance: float, late: int, langua
                 *(batch.reach, float(tolerance), late, result[of]),
             )
     return result[:runs]
-
-
-def _contiguous(array: Array) -> Array:
-    return np.ascontiguousarray(array, dtype=float)
 
 
 def compiled(loop: BatchLoop, language: Language) -> Callable[..., None]:

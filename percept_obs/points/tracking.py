@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,7 +18,7 @@ from percept_obs.points.run import PointsRun
 from percept_obs.system.motion import Motion
 from percept_obs.tracking.following import DoesNotFit, follow
 from percept_obs.tracking.grid import TimeGrid
-from percept_obs.validation import checked, numbers
+from percept_obs.validation import checked, numbers, positive
 
 KEPT = 100
 """Approximate number of samples at which P is kept for its conditions."""
@@ -62,9 +61,9 @@ class FirstSight:
     absence: float = math.inf
 
     def __post_init__(self) -> None:
-        for name, value, largest in (("depth", self.depth, sys.float_info.max), ("absence", self.absence, math.inf)):
-            if not 0 < value <= largest:
-                raise ValueError(f"the {name} is {value}; it must be positive" + " and finite" * (name == "depth"))
+        positive(depth=self.depth)
+        if not self.absence > 0:
+            raise ValueError(f"the absence is {self.absence}; it must be positive")
 
 
 @follow.register

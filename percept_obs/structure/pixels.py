@@ -108,14 +108,14 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
     if np.linalg.matrix_rank(reference - reference.mean(axis=0), tol=1e-9) < 2:
         raise ValueError("the points lie on a line in the reference picture; take points that span the patch")
     to_reference, to_images = _normalising(reference), _normalising(images)
-    p = _homogeneous(images) @ np.swapaxes(to_images, -1, -2)
-    m = np.broadcast_to(_homogeneous(reference) @ to_reference.T, p.shape)
+    p = np.insert(images, 2, 1.0, axis=-1) @ np.swapaxes(to_images, -1, -2)
+    m = np.broadcast_to(np.insert(reference, 2, 1.0, axis=-1) @ to_reference.T, p.shape)
     if np.linalg.svd(_equations(m, m), compute_uv=False)[..., 7].min(initial=np.inf) < 1e-9:
         raise ValueError("the points of the reference picture determine no map; take four, no three on a line")
     solution = np.linalg.svd(_equations(m, p))[2][..., -1, :]
     H = np.linalg.inv(to_images) @ solution.reshape(*solution.shape[:-1], 3, 3) @ to_reference
     H = H / np.linalg.svd(H, compute_uv=False)[..., 1, None, None]
-    depths = H[..., 2, :] @ _homogeneous(reference).T
+    depths = H[..., 2, :] @ np.insert(reference, 2, 1.0, axis=-1).T
     return H * np.sign(depths.sum(axis=-1))[..., None, None]
 
 
@@ -127,18 +127,12 @@ def _equations(m: Array, p: Array) -> Array:
     return np.concatenate([first, second], axis=-2)
 
 
-def _homogeneous(points: Array) -> Array:
-    """Points (y1, y2, 1)."""
-    return np.concatenate([points, np.ones((*points.shape[:-1], 1))], axis=-1)
-
-
 def _normalising(points: Array) -> Array:
     """Similarity after which the points' centre is 0 and their root mean square distance to it sqrt(2)."""
     centre = points.mean(axis=-2)
     squares = np.sum((points - centre[..., None, :]) ** 2, axis=-1)
     scale = np.sqrt(2 / squares.mean(axis=-1))
-    transform = np.zeros((*points.shape[:-2], 3, 3))
-    transform[..., 0, 0] = transform[..., 1, 1] = scale
+    transform = scale[..., None, None] * np.eye(3)
     transform[..., :2, 2] = -scale[..., None] * centre
     transform[..., 2, 2] = 1
     return transform
