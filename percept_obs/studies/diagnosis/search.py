@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -54,6 +54,12 @@ OUTLYING = 6.0
 
 FEW = (3, 0.003)
 
+MOST_FAR = 0.15
+"""Share of the samples that may be left out as outliers at most."""
+
+DEVIATION = 1.4826
+"""Standard deviation of normal noise, in medians of its size."""
+
 OFFSETS = tuple(np.linspace(-LARGEST_OFFSET, LARGEST_OFFSET, 11).tolist())
 """Offsets in seconds of which the best one begins a fit."""
 
@@ -87,7 +93,8 @@ class Found:
 
 def search(tracks: tuple[Track, ...], noise: float | None) -> Found:
     """Return the mistakes that explain tracks best, with noise of a known deviation or not."""
-    keys, bare = _possible(tracks), fit(tracks, "nothing", ())
+    keys, bare = _possible(tracks), _trimmed(fit(tracks, "nothing", ()), noise)
+    tracks = tuple(bare.tracks)
     screened = [bare, *(fit(tracks, mix_up, ()) for mix_up in MIX_UPS if mix_up != "nothing")]
     switch = _switched(bare, noise)
     if switch is not None and _explained(parted := fit(switch.tracks, "nothing", ()), noise):
@@ -102,7 +109,7 @@ def search(tracks: tuple[Track, ...], noise: float | None) -> Found:
                 switch = None
             else:
                 best = parted
-    best = _fewest(best)
+    best = _trimmed(_fewest(best), noise)
     explained = _explained(best, noise)
     estimates = _estimates(best, keys)
     needed: dict[str, tuple[Fit, tuple[str, ...]]] = {}
@@ -147,6 +154,20 @@ def _explained(found: Fit, noise: float | None) -> bool:
     if noise is not None:
         return found.rms <= UNEXPLAINED * max(noise, FINEST)
     return found.rms <= FINEST or found.correlation <= WHITE
+
+
+def _trimmed(found: Fit, noise: float | None) -> Fit:
+    """Fit without the few samples that are far off, if it explains the rest and the fit of all does not."""
+    if _explained(found, noise):
+        return found
+    far = OUTLYING * max(DEVIATION * float(np.median(np.abs(found.values))), noise or 0.0, FINEST)
+    pairs = zip(found.tracks, found.residuals, strict=True)
+    near = [(track, (np.nan_to_num(np.abs(left)) <= far).all(axis=1, keepdims=True)) for track, left in pairs]
+    tracks = tuple(replace(track, used=track.used & few) for track, few in near)
+    if sum(track.count for track in tracks) < (1 - MOST_FAR) * len(found.values):
+        return found
+    other = fit(tracks, found.mix_up, [*found.wrong], found.wrong)
+    return other if _explained(other, noise) else found
 
 
 def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> Fit:
