@@ -197,9 +197,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         return options.run(options)
-    except (ValueError, OSError, ModuleNotFoundError) as error:
+    except (ValueError, ModuleNotFoundError) as error:
         print(f"percept-obs: {error}", file=sys.stderr)
         return getattr(error, "code", 2)
+    except OSError as error:
+        print(f"percept-obs: cannot use {error.filename}: {error.strerror}", file=sys.stderr)
+        return 2
 
 
 def _refuse_a_file(directory: Path) -> None:

@@ -92,7 +92,7 @@ def test_a_killed_sweep_goes_on_where_it_was(xr, alone, tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "cannot read"),
+        ("", "sweep.toml: No such file"),
         ("scenario = ", "is no TOML"),
         ('scenario = "ma2005_eq35"\nobserver = "ibo"\nnoise = 1\nstore = "a.zarr"', "does not know noise"),
         ('scenario = "eq99"\nobserver = "ibo"\nstore = "a.zarr"', "no scenario 'eq99'; there are ma2005_eq35"),
