@@ -117,6 +117,12 @@ def test_what_is_no_camera_is_refused(tmp_path, text, camera, message):
         PixelCamera.from_yaml(written(tmp_path, text), camera)
 
 
+@pytest.mark.parametrize("diagonal", [(0, 0, 0, 0), (-1, 1, 1, 1), (2, 1, 1, 1), (1, 1, 1, 7)])
+def test_a_mount_is_a_rotation_and_a_place(tmp_path, diagonal):
+    with pytest.raises(ValueError, match="expected a rotation beside p, above 0 0 0 1"):
+        read_mount(written(tmp_path, f"T_BS: {np.diag(diagonal).tolist()}"))
+
+
 def test_no_file_and_no_mount_are_told(tmp_path):
     with pytest.raises(FileNotFoundError, match="there is no file"):
         PixelCamera.from_yaml(tmp_path / "none.yaml")
@@ -189,6 +195,12 @@ def test_times_are_read_from_the_names_of_images(tmp_path):
 def test_what_is_no_model_is_refused(tmp_path, settings, how, message):
     with pytest.raises(ValueError, match=message):
         read_colmap(write_colmap(tmp_path, **settings), **how)
+
+
+@pytest.mark.parametrize("settings", [{"gap": np.nan}, {"shortest": -1.0}])
+def test_tracks_of_a_model_are_split_by_times(tmp_path, settings):
+    with pytest.raises(ValueError, match="expected a positive gap, and 0 or more"):
+        read_colmap(write_colmap(tmp_path), rate=20).recordings(**settings)
 
 
 def test_a_folder_without_a_model_and_images_for_poses_are_told(tmp_path):

@@ -262,6 +262,7 @@ test_what_makes_no_sense_is_refused = refuses(
     ({"over": {"gain": range(10**9)}}, r"1e\+09 entries of a range"),
     ({"over": {"gain": ["1", "2"]}}, "over gain is the list .* expected real numbers"),
     ({"step": 1e-12}, r"1e\+12 steps"),
+    ({"step": 0.0}, "step is 0.0; it must be positive"),
     ({"store": ""}, "the store '' is no Zarr store; name a new folder"),
     ({"store": Path(__file__)}, "test_ensemble.py' is no Zarr store"),
     ({"store": Path(__file__).parent}, "tests' is no Zarr store"),

@@ -138,6 +138,7 @@ test_what_is_no_recording_is_refused = refuses(
     ({"names": ("y1", "y1")}, "each once"),
     ({"outputs": [[0, 1], [np.inf, 1], [1, 1]]}, "outputs are finite"),
     ({"truth": np.zeros((2, 3))}, "the truth has shape"),
+    *(({"distances": {name: np.ones(3)}}, f"have the name '{name}'") for name in ("", "time", "truth", "y1")),
     ({"truth": [[0, 0, 1], [0, 0, np.inf], [0, 0, 1]]}, "finite"),
     ({"distances": {"stereo": [1, 2]}}, "must be positive numbers or NaN, of shape \\(3,\\)"),
     ({"distances": {"stereo": [1, 2, -1]}}, "must be positive numbers or NaN, of shape \\(3,\\)"),

@@ -107,7 +107,7 @@ def test_a_point_behind_the_camera_has_its_own_error(tmp_path):
     [
         ({"gap": 0.0}, "gap is 0.0 s .* expected a positive gap"),
         ({"shortest": -1.0}, "shortest is -1.0 s"),
-        ({"pixels": ["u"]}, "pixels names the columns"),
+        *(({"pixels": names}, "pixels names the columns") for names in (["u"], ["u", "u"])),
         ({"camera": None, "pixel_sigma": 1.0}, "pixel_sigma is in pixels; give also camera"),
         ({"camera": None}, r"it needs 'time' and at least one of y1, y2, or a camera=PixelCamera"),
         ({"point": None, "gap": 1.0}, "name the column of these"),

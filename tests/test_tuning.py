@@ -105,3 +105,8 @@ test_choices_that_are_none_are_refused = refuses(
     (CHOOSING, REPORTING, {de_luca: ()}, "at least one candidate"),
     (CHOOSING, REPORTING, {de_luca: ({"hidden_gain": -1},)}, "out of range"),
 )
+
+
+def test_less_than_no_run_is_not_judged():
+    with pytest.raises(ValueError, match="judged is -1"):
+        choose_and_report(CHOOSING, REPORTING, AFFINE.measure("y1", "y2"), follow, GAINS, judged=-1)

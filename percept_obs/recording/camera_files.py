@@ -32,7 +32,7 @@ def fields_of_camera(path: PathLike, camera: str | None) -> dict[str, Any]:
             f"PixelCamera is a pinhole behind one of {', '.join(LENSES[1:])}: rectify the images"
         )
     if "intrinsics" in found:
-        fx, fy, cx, cy = _numbers(file, found, "intrinsics", 4)
+        fx, fy, cx, cy = _numbers(file, found, "intrinsics", 4).tolist()
     else:
         matrix = _numbers(file, found, "camera_matrix", 9)
         fx, _, cx, _, fy, cy, *_ = matrix
@@ -85,6 +85,9 @@ def read_mount(path: PathLike, camera: str | None = None) -> tuple[Array, Array]
         if key in found:
             mount = _numbers(file, found, key, 16).reshape(4, 4)
             place, turn = mount[:3, 3], mount[:3, :3]
+            turned = np.allclose(turn @ turn.T, np.eye(3), atol=1e-3) and np.linalg.det(turn) > 0
+            if not turned or (mount[3] != (0, 0, 0, 1)).any():
+                raise ValueError(f"{file} has {key} = {mount.tolist()}; expected a rotation beside p, above 0 0 0 1")
             return (-turn.T @ place, turn.T) if backwards else (place, turn)
     raise ValueError(f"{file} has {', '.join(found)}; it needs T_BS, T_imu_cam or T_cam_imu for a mount")
 

@@ -19,7 +19,7 @@ from percept_obs.recording.derivatives import Derivative
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import USUAL, Poses
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
-from percept_obs.recording.track_table import tracks_of_points
+from percept_obs.recording.track_table import refuse_parts, tracks_of_points
 from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked, positive
 
@@ -84,6 +84,7 @@ class ColmapModel:
         """
         import pandas as pd
 
+        refuse_parts(gap, shortest)
         path, surface = self.poses.path(derivative), pinhole()
         variance = None if pixel_sigma is None else self.camera.variance(pixel_sigma)
         image, place = self.seen.T

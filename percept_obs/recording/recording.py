@@ -136,6 +136,8 @@ class Recording:
         self._check_outputs()
         self._check_truth()
         expected = (len(self.time), *self.view.point_shape)
+        if taken := sorted({"", "time", "truth", *self.names} & set(distances)):
+            raise ValueError(f"the distances have the name {taken[0]!r}, which stands for something else; rename them")
         for name, values in distances.items():
             if values.shape != expected or not (np.isnan(values) | (np.isfinite(values) & (values > 0))).all():
                 raise ValueError(f"the distances {name!r} must be positive numbers or NaN, of shape {expected}")

@@ -43,10 +43,9 @@ def fields_of_recordings(
 
     The parameters are those of `Recording.from_csv`.
     """
-    if len(pixels) != 2:
+    if len(pixels) != 2 or pixels[0] == pixels[1]:
         raise ValueError(f"pixels names the columns {pixels!r}; expected two names, such as ('u', 'v')")
-    if not gap > 0 or not 0 <= shortest < math.inf:
-        raise ValueError(f"the gap is {gap} s and shortest is {shortest} s; expected a positive gap, and 0 or more")
+    refuse_parts(gap, shortest)
     if pixel_sigma is not None and camera is None:
         raise ValueError("pixel_sigma is in pixels; give also camera=PixelCamera(...)")
     if point is None and (gap < math.inf or shortest):
@@ -101,6 +100,12 @@ def fields_of_recordings(
             "distances": {name: values[rows] for name, values in others.items()},
             "source": source,
         }
+
+
+def refuse_parts(gap: float, shortest: float) -> None:
+    """Refuse what splits no track, in seconds."""
+    if not gap > 0 or not 0 <= shortest < math.inf:
+        raise ValueError(f"the gap is {gap} s and shortest is {shortest} s; expected a positive gap, and 0 or more")
 
 
 def runs(time: Array, samples: Indices, gap: float) -> list[Indices]:

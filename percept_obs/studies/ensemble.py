@@ -26,7 +26,7 @@ from percept_obs.system.surfaces import POINT
 from percept_obs.tracking.following import DoesNotFit, named_start, track
 from percept_obs.tracking.grid import Hold
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import Kind, checked, limit, needed
+from percept_obs.validation import Kind, checked, limit, needed, positive
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -158,6 +158,7 @@ def ensemble(
         raise ValueError(f"over has {', '.join(unknown)}, which cannot vary here; there are {', '.join(names)}")
     if not several.size or several.ndim != 1 or several.dtype.kind not in "iu" or several.min() < 0:
         raise ValueError(f"the seeds are {seeds!r}; give whole numbers from 0 on, or how many of them")
+    positive(step=step)
     steps = duration / min(step, camera.period)
     limit(steps, "steps", "take longer steps or a shorter time")
     grid = grid_of(over or {}, several, names)

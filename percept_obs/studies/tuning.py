@@ -128,6 +128,8 @@ def choose_and_report(
         raise ValueError("every observer needs at least one candidate for its gains")
     if not len(references) or not len(after):
         raise ValueError(f"{len(references)} references and {len(after)} times: at least one of each is needed")
+    if judged < 0:
+        raise ValueError(f"judged is {judged}; it must be 0 or a number of recordings")
     unit = own_length(form, choosing) if length is None else length
     choosing, reporting = ([replace(each, unit=unit) for each in half] for half in (choosing, reporting))
     questions = list(product(references, after))
