@@ -67,6 +67,7 @@ def sweep(path: str | os.PathLike[str], client: Any = None) -> Any:
     >>> file.write_text(os.linesep.join(lines)) and dict(sweep(file).sizes)
     {'seed': 2}
     """
+    refuse_kind("sweep", "path", path, str | os.PathLike)
     file = Path(path)
     try:
         entries = tomllib.loads(file.read_text(encoding="utf-8"))
