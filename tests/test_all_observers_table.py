@@ -141,7 +141,13 @@ def test_without_a_truth_and_a_filter_least_squares_stand_for_it():
     assert one_call.start["y3"] == pytest.approx(found(SEEN, after=(1.0,)).start["y3"], rel=0.2)
     for said in ("There is no truth: the table has differences from least squares", "differences on 2 others"):
         assert said in repr(one_call)
-    assert one_call.side_by_side.columns.tolist()[-5:] == ["claimed 1 s", "claimed 2 s", "trusted", "cost", "remark"]
+    assert one_call.side_by_side.columns.tolist()[-5:] == [
+        "claimed 1 s",
+        "claimed 2 s",
+        "trusted at the end",
+        "cost",
+        "remark",
+    ]
 
 
 @pytest.mark.slow

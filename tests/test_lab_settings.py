@@ -53,7 +53,7 @@ def test_terms_of_a_gain_that_is_zero_are_left_out_of_the_equations(lab):
             text = "".join(variant["lines"])
             assert not [gain for gain in variant["zero"] if f'data-letter="{gain}"' in text]
     filtered = whole_model(lab)["observers"]["extended_kalman"]["equations"][""]
-    assert [len(variant["zero"]) for variant in filtered] == [4, *[3] * 4, *[2] * 6, *[1] * 4, 0]
+    assert [len(variant["zero"]) for variant in filtered] == [4, *[3] * 4, 0]
 
 
 def test_a_point_that_leaves_is_followed_until_then(lab):

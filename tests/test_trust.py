@@ -128,7 +128,7 @@ def test_a_scale_that_drifts_and_a_claim_that_is_wide_are_told():
     assert "the length of your translation drifts by" in str(drifting)
     good = blindly(track(recording, observer, {"y3": 0.3}))[1]
     assert good.kind == "agrees"
-    assert str(good).endswith("; this rests on the length of your translation")
+    assert str(good).endswith("; this rests on the length of your translation.")
     unsure = observer.with_gains(velocity_noise=0.1)
     wide = blindly(track(recording, unsure, {"y3": 0.3}))[1]
     assert wide.kind == "wide"

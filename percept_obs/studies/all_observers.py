@@ -289,7 +289,7 @@ def _judge(
     sentence = (
         f"There is no truth: the table has differences from {label}{tuned}; other observers have those gains of their "
         "candidates with which they agree best with it. They agree where all are wrong alike, as with a wrong scale of "
-        "the motion. Claimed is one standard deviation, trusted the share of runs, evenly sampled"
+        "the motion. Claimed is one standard deviation, trusted at the end the share of some runs, evenly sampled"
     )
     return label, estimate, sentence
 

@@ -304,7 +304,7 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
             found[name] = "–" if first.refusal else f"{rows[name].max():.0f}"
         if blind:
             found |= {f"claimed {row.after:g} s": share(row.claimed) for row in rows.itertuples()}
-            found["trusted"] = share(first.trusted)
+            found["trusted at the end"] = share(first.trusted)
         found["cost"] = "–" if first.refusal else f"{1e6 * first.cost:.0f} us/s"
         edge = first.at_edge and f"; at the edge of what was tried: {first.at_edge}"
         remark = "; ".join(filter(None, [first.gains + edge, first.warning]))

@@ -367,7 +367,7 @@ class Run:
             return VERDICTS["diverged"].format(time=time, remedy=self.remedy)
         if self.recording.truth is None or not self._known.any():
             said = VERDICTS["followed"].format(time=number(self.elapsed[-1]))
-            said += "" if names else str(self.trust(tolerance))
+            said += "" if names else self.trust(tolerance).clause
         else:
             said = in_words(self.outcome(tolerance, *names), ", ".join(names) or self.view.judged, tolerance, names)
         return said + self._resets_and_gaps()

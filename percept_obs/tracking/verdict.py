@@ -108,7 +108,7 @@ class Outcome:
 
 @dataclass(frozen=True, eq=False)
 class Trust:
-    """Trust in the last estimate without a truth; its text continues a sentence.
+    """Trust in the last estimate without a truth.
 
     The kind is "agrees" (with what the samples tell), "differs", "wide" (the observer claims more than the tolerance),
     "contradicted" (longer windows tell something else, so that the motion is not as it is known), "drifting" (the scale
@@ -133,10 +133,16 @@ class Trust:
 
     @property
     def sentence(self) -> str:
-        """The text as a sentence of its own."""
-        return f"{str(self).removeprefix('; ')}."
+        """The judgement as a sentence of its own."""
+        said = self.clause.removeprefix("; ")
+        return f"{said[0].upper()}{said[1:]}."
 
     def __str__(self) -> str:
+        return self.sentence
+
+    @property
+    def clause(self) -> str:
+        """The judgement as the end of another sentence."""
         fields = {"judged": self.judged, "difference": percent(self.difference), "apart": percent(self.disagreement)}
         if self.information is None:
             return VERDICTS[self.kind]

@@ -39,7 +39,8 @@ def equations_in_scalars(observer: Observer) -> list[dict[str, Any]]:
 
 def _without_zeros(observer: Observer, lines: Callable[..., list[str]]) -> list[dict[str, Any]]:
     optional = {gain.name: gain.symbol for gain in observer.gains if gain.value == 0}
-    subsets = [names for size in range(len(optional), -1, -1) for names in combinations(optional, size)]
+    sizes = sorted({len(optional), max(len(optional) - 1, 0), 0}, reverse=True)  # all, all but one, and none
+    subsets = [names for size in sizes for names in combinations(optional, size)]
     return [{"zero": list(names), "lines": lines(zero=[optional[name] for name in names])} for names in subsets]
 
 
