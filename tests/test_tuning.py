@@ -7,12 +7,13 @@ import pytest
 from examples import AFFINE, BOTH, NOISY, ONE, ZERO
 from refusals import refuses
 
-from percept_obs import record, scenarios, track
+from percept_obs import PerspectiveSystem, pinhole, record, rigid, scenarios, track
 from percept_obs.observers import OBSERVERS, de_luca, extended_kalman, integral_sliding_mode, range_identification
 from percept_obs.observers.gains import grid
 from percept_obs.studies.comparison import relative_distance_errors
 from percept_obs.studies.least_squares import moving_window_least_squares
 from percept_obs.studies.tuning import choose_and_report, side_by_side
+from percept_obs.tracking.following import DoesNotFit
 
 FOUR = [record(scenarios.ma2005_eq35(), 3, replace(NOISY, period=0.05), seed) for seed in range(4)]
 CHOOSING, REPORTING = FOUR[:2], FOUR[2:]
@@ -110,3 +111,8 @@ test_choices_that_are_none_are_refused = refuses(
 def test_less_than_no_run_is_not_judged():
     with pytest.raises(ValueError, match="judged is -1"):
         choose_and_report(CHOOSING, REPORTING, AFFINE.measure("y1", "y2"), follow, GAINS, judged=-1)
+
+
+def test_recordings_of_another_motion_than_the_form_are_refused():
+    with pytest.raises(DoesNotFit, match="use the same kind of motion for both"):
+        reported(PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2"))

@@ -33,6 +33,9 @@ def fields_of_camera(path: PathLike, camera: str | None) -> dict[str, Any]:
         )
     if "intrinsics" in found:
         fx, fy, cx, cy = _numbers(file, found, "intrinsics", 4).tolist()
+    elif "camera_matrix" not in found:
+        there = ", ".join(found) or "nothing"
+        raise ValueError(f"{file} has {there}; a camera needs camera_matrix, or intrinsics, with its focal lengths")
     else:
         matrix = _numbers(file, found, "camera_matrix", 9)
         fx, _, cx, _, fy, cy, *_ = matrix

@@ -18,7 +18,7 @@ from percept_obs.recording import Recording
 from percept_obs.studies.comparison import Follow, best_setting, errors_of, timed
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.signal import from_the_start
-from percept_obs.tracking.following import DoesNotFit, StepTooLong
+from percept_obs.tracking.following import DoesNotFit, StepTooLong, require_match
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
 from percept_obs.validation import bar, checked
@@ -100,6 +100,8 @@ def choose_and_report(
     ValueError
         If there are no recordings or candidates, a recording is in both halves, or all are too short or one has no
         such reference.
+    DoesNotFit
+        If a recording has another view, other outputs or another motion than the form.
 
     See Also
     --------
@@ -120,6 +122,8 @@ def choose_and_report(
 
     if not len(choosing) or not len(reporting):
         raise ValueError(f"{len(choosing)} recordings to choose on, {len(reporting)} to report on: both need some")
+    for recording in (*choosing, *reporting):
+        require_match(form, recording, recording.motion)
     if {id(recording) for recording in choosing} & {id(recording) for recording in reporting}:
         raise ValueError("a recording is in both halves: its errors would be too small if gains were chosen on it")
     if candidates is None:

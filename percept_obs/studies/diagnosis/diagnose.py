@@ -206,7 +206,7 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
         if track.count < FEWEST:
             raise ValueError(
                 f"{recording!r} has {track.count} values where its motion is known up to the largest offset that is "
-                f"tried, {LARGEST_OFFSET} s; {FEWEST} are needed"
+                f"tried, {LARGEST_OFFSET} s; {FEWEST} are needed: leave it out, or give longer poses"
             )
     found = search(tracks, noise)
     return Diagnosis(
