@@ -72,6 +72,7 @@ NOTHING = {
 }
 
 
+@pytest.mark.slow
 def test_what_is_the_same_by_a_relation_of_functions_is_right_and_no_attack_on_the_decision_is(node):
     texts = [*THE_SAME, *NOTHING.values(), *(f"({text}) b3" for text in NOTHING.values())]
     same, plain, times = np.split(marks(node, [f"{RIGHT} + {text}" for text in texts]), [6, 6 + len(NOTHING)])

@@ -615,13 +615,11 @@ def example(name):
     return lambda **axes: eval(f"{text}, **axes)", values | {"axes": axes})
 
 
-LONG = {"bound_map", "cases", "chatter", "comparison", "entries", "fields", "observability", "causes", "settings_map"}
-"""Figures of studies, whose examples compute much."""
+QUICK = ("consistency", "distance", "scene", "signals")
+"""Figures that are quick to draw; the others are drawn among the slow tests."""
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in figures.__all__[1:]]
-)
+@pytest.mark.parametrize("name", slow_but(*QUICK, among=figures.__all__[1:]))
 def test_each_figure_has_a_text_and_labels_with_units_and_draws_on_given_axes(name):
     import matplotlib.pyplot as plt
 

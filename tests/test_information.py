@@ -15,6 +15,7 @@ def fitted(recording):
     return of_points.many_points(BODY.form, recording)(0, [])
 
 
+@pytest.mark.slow
 def test_many_points_claim_the_noise_and_the_errors_that_they_have():
     """With 20 numbers for 6 states a sum of squares over all 20 would be a third too small."""
     drawn = [record(BODY, 4.0, Camera(1.0, Gaussian(SIGMA)), seed) for seed in range(40)]

@@ -65,7 +65,7 @@ def runs_observers(entry):
     return not vars(sys.modules[entry.check.__module__]).keys().isdisjoint({"track", "followed"})
 
 
-EVERY = 4
+EVERY = 8
 each_entry = pytest.mark.parametrize(
     "entry",
     [
