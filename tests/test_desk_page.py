@@ -18,7 +18,7 @@ from percept_obs.labs.desk.systems import number_of, system_of
 pytestmark = pytest.mark.node
 
 RATE, SPHERE = "affine pinhole, rate", "affine sphere, rate"
-FORMULAS = sampled(240, 10_000)
+FORMULAS = sampled(120, 10_000)
 """Lines that are judged in both."""
 
 

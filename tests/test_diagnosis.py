@@ -72,14 +72,14 @@ def test_mistakes_are_named_or_the_motion_cannot_tell():
         right = named.count(fault) + named.count("cannot tell")
         assert right >= 0.9 * len(named), (fault, named)
         assert right + named.count("nothing") == len(named), (fault, named)
-    for seed in range(sampled(8, 200)):
+    for seed in range(sampled(4, 200)):
         assert not diagnosed(clean(seed)).findings, seed
 
 
 @pytest.mark.slow
 def test_of_two_mistakes_both_are_named_or_something_is_left():
     """Sixty pairs with ALL_SAMPLES=1."""
-    count = sampled(6, 60)
+    count = sampled(4, 60)
     good = false = 0
     for seed in range(count):
         pair, found = together(seed)

@@ -7,6 +7,7 @@ from functools import cache
 import pytest
 from derivations import is_found
 from formula_corpus import entries, target
+from sample_sizes import sampled
 
 from percept_obs import check
 from percept_obs.checking.explaining import wrong_terms
@@ -56,7 +57,8 @@ def shares(chosen):
 
 @pytest.mark.slow
 def test_wrong_formulas_are_refused_located_and_named():
-    wrong = entries("wrong")
+    """Every other one; all of them with ALL_SAMPLES=1."""
+    wrong = entries("wrong")[:: sampled(2, 1)]
     own = [entry for entry in wrong if "own surface" in entry.target]
     for entry in wrong:
         one = found(entry)
