@@ -50,7 +50,7 @@ def surfaces(observer):
 
 
 def zero(matrix, switches=()):
-    """Whether a matrix is zero, at numbers drawn at random; sgn s is replaced by the symbols given for it."""
+    """True if a matrix is zero at numbers drawn at random; sgn s is replaced by the symbols given for it."""
     symbols = sorted(matrix.free_symbols, key=str)
     values = vectorised(symbols, list(matrix))(*np.random.default_rng(1).uniform(-0.5, 0.5, (len(symbols), 50)))
     return np.abs(values).max() < 1e-9

@@ -1,4 +1,4 @@
-"""What is printed for the page is shipped, current and whole, and a lab opens with it at once."""
+"""The printed files of the page are shipped, current and whole, and a lab opens with them at once."""
 
 import subprocess
 import threading

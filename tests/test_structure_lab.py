@@ -28,7 +28,7 @@ def lab():
 
 @pytest.fixture(scope="module")
 def answers(lab, node):
-    """What the page's engine says of each case, with the settings as Python completed them."""
+    """Answers of the page's engine for each case, with the settings as Python completed them."""
     settings = {name: structure_lab(**case).settings for name, case in CASES.items()}
     found = run_in_node(node, lab, list(settings.values()))
     return {name: (settings[name], answer) for name, answer in zip(settings, found, strict=True)}

@@ -1,4 +1,4 @@
-"""What pictures of an object give: its scaled inverse depth, with what noise, bias and drift do to the estimates."""
+"""Simulated pictures of an object: its scaled inverse depth, with what noise, bias and drift do to the estimates."""
 
 from dataclasses import replace
 

@@ -281,7 +281,7 @@ def test_only_the_last_coordinate_of_a_surface_has_a_length(surface):
 @pytest.mark.parametrize("unit", [1.0, *UNITS.values()])
 @pytest.mark.parametrize(("depth", "speed"), [(0.3, 0.05), (30, 12)], ids=["table top", "street"])
 def test_default_gains_suit_a_recordings_own_unit(unit, depth, speed):
-    """The same scene in other sizes: with speed over depth as it is, only the unit says what is large."""
+    """A scene in other sizes: with speed over depth as it is, only the unit says what is large."""
     fast = speed * unit
     moving = rigid(lambda t: [0.1 * np.sin(t), 0.1, 0], lambda t: [fast * np.cos(t / 2), 0.3 * fast, 0], [0, 0, 0])
     made = Scenario("own", moving, np.array([0.2, -0.1, 1]) * depth * unit, 5, pinhole())

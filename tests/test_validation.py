@@ -1,4 +1,4 @@
-"""What comes in from outside: slips are told by what to write instead, work is limited beforehand, files are whole."""
+"""Checks of what comes in from outside: slips are told by what to write instead, work is limited beforehand, files are whole."""
 
 import math
 import warnings
