@@ -1,4 +1,4 @@
-"""Checks of what comes in from outside: slips are told by what to write instead, work is limited beforehand, files are whole."""
+"""Checks of what comes in: slips are told by what to write instead, work is limited beforehand, files are whole."""
 
 import math
 import warnings
