@@ -102,7 +102,7 @@ def by_the_page(node, chosen):
 
 
 def answers_of_the_page(node, *desks):
-    """What the page answers to the settings of desks by itself."""
+    """Answers of the page itself to the settings of desks."""
     settings = [(next(iter(desk.sheets), _name(desk.settings)), desk.settings) for desk in desks]
     return _run(node, settings=settings, own={name: each for desk in desks for name, each in desk.sheets.items()})[
         "answers"

@@ -114,7 +114,7 @@ DESKS = {
 
 @pytest.fixture(scope="module")
 def answers(node):
-    """What the page answers to desks, by their names; three outputs are no picture."""
+    """Answers of the page to desks, by their names; three outputs are no picture."""
     own = derivation_desk(PerspectiveSystem(rigid(), plane((0.1, 0.2, 1.0), outputs=3)), step=6)
     desks = [own, *(derivation_desk(**settings) for settings in DESKS.values())]
     return dict(zip(["three outputs", *DESKS], answers_of_the_page(node, *desks), strict=True))

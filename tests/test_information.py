@@ -1,4 +1,4 @@
-"""What the samples tell at the end of a run: least squares claim the errors that they make."""
+"""Information at the end of a run: least squares claim the errors that they make."""
 
 import numpy as np
 import pytest

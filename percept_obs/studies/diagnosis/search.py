@@ -110,27 +110,29 @@ def search(tracks: tuple[Track, ...], noise: float | None) -> Found:
             else:
                 best = parted
     best = _trimmed(_fewest(best), noise)
-    explained = _explained(best, noise)
-    estimates = _estimates(best, keys)
-    needed: dict[str, tuple[Fit, tuple[str, ...]]] = {}
+    explained, estimates, needed = _explained(best, noise), _estimates(best, keys), _needed(best, keys)
     if switch is not None:
-        needed["mismatch"] = (bare, ())
-    if best.mix_up != "nothing":
-        needed[MIX_UPS[best.mix_up].key] = (_without(best, best.wrong, "nothing"), _other_mix_ups(best))
-    by_weight = sorted(
-        ((_without(best, _rest(best, key)), key) for key in best.wrong), key=lambda each: -each[0].squares
-    )
-    for without, key in by_weight:
-        others = [other for other in keys if other not in best.wrong]
-        as_good = [other for other in others if best.gain(_without(best, [*_rest(best, key), other])) < CLEARLY]
-        needed[key] = without, tuple(as_good)
-    not_told = [key for key in CAUSES if key not in keys or not SURELY * estimates[key].deviation < CAUSES[key].usual]
+        needed = {"mismatch": (bare, ())} | needed
+    alike = [each for each in screened[1:] if each.rms < ALIKE * bare.rms + FINEST / 10]
+    hidden = [key for key in CAUSES if key not in keys or not SURELY * estimates[key].deviation < CAUSES[key].usual]
     if explained and best.mix_up == "nothing":
-        alike = [each for each in screened[1:] if each.rms < ALIKE * bare.rms + FINEST / 10]
-        not_told += [MIX_UPS[each.mix_up].key for each in alike]
-    not_told = [key for key in dict.fromkeys(not_told) if key not in needed]
+        hidden += [MIX_UPS[each.mix_up].key for each in alike]
+    not_told = tuple(key for key in dict.fromkeys(hidden) if key not in needed)
     outliers = _outliers(best, noise) if explained else (0, 0)
-    return Found(bare, best, explained, switch, needed, estimates, tuple(not_told), outliers)
+    return Found(bare, best, explained, switch, needed, estimates, not_told, outliers)
+
+
+def _needed(best: Fit, keys: Sequence[str]) -> dict[str, tuple[Fit, tuple[str, ...]]]:
+    """Mistakes of the best fit, as `Found` has them: the mix-up, then the numbers, those that explain most first."""
+    found: dict[str, tuple[Fit, tuple[str, ...]]] = {}
+    if best.mix_up != "nothing":
+        found[MIX_UPS[best.mix_up].key] = (_without(best, best.wrong, "nothing"), _other_mix_ups(best))
+    alone = {key: _without(best, _rest(best, key)) for key in best.wrong}
+    others = [key for key in keys if key not in best.wrong]
+    for key, without in sorted(alone.items(), key=lambda each: -each[1].squares):
+        as_good = [other for other in others if best.gain(_without(best, [*_rest(best, key), other])) < CLEARLY]
+        found[key] = without, tuple(as_good)
+    return found
 
 
 def _possible(tracks: Sequence[Track]) -> list[str]:
@@ -199,6 +201,7 @@ def _squares(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> float:
 
 
 def _rest(best: Fit, key: str) -> list[str]:
+    """Keys of a fit's other numbers."""
     return [other for other in best.wrong if other != key]
 
 
