@@ -26,6 +26,20 @@ def test_the_point_that_explains_a_track_leaves_its_noise():
     assert fit([track_of(exact)], "nothing", ()).rms < 1e-9
 
 
+def test_a_path_is_of_fourth_order_where_rotations_do_not_commute():
+    turning = rigid(lambda t: [np.sin(2 * t), np.cos(3 * t), 0.5], lambda t: [np.cos(t), 0.3, 0], [0, 0, 0])
+    exact = record(Scenario("turning", turning, (0.2, 0.1, 6), 2, pinhole()), camera=Camera(0.05))
+    assert fit([track_of(exact)], "nothing", ()).rms < 2e-6
+
+
+def test_a_number_that_was_not_fitted_is_estimated_by_one_step():
+    late = spoiled(SESSION, ["focal length"], np.random.default_rng(2))
+    tracks = [track_of(each) for each in late]
+    (fitted,) = fit(tracks, "nothing", ["focal length"]).wrong.values()
+    estimate = fit(tracks, "nothing", ()).estimates(["focal length"])["focal length"]
+    assert estimate.value == pytest.approx(fitted, rel=0.3)
+
+
 def test_lost_samples_and_one_output_are_explained_as_well():
     exact = record(scenarios.ma2005_eq35(), 4)
     outputs = exact.outputs.copy()
@@ -119,6 +133,14 @@ def test_one_recording_of_many_shows_another_landmark():
     assert found.named == "mismatch"
     assert "shows another landmark from" in found.sentence
     assert found.explained
+
+
+def test_outliers_are_named_and_left_out():
+    session, draw = drawn(14, points=2)
+    found = diagnose(spoiled(session, ["outliers"], draw))
+    assert found.named == "outliers"
+    assert found.explained
+    assert 0.01 < found.findings[0].value < 0.1
 
 
 def test_what_none_of_the_mistakes_explains_is_said():
