@@ -6,7 +6,7 @@ from percept_obs.figures.observability import bound_map, consistency, excitation
 from percept_obs.figures.runs import distance, runs_over_time, signals
 from percept_obs.figures.scene import scene, velocities
 from percept_obs.figures.structure import cases, depth_errors, error_norm, quantities
-from percept_obs.figures.studies import causes, chatter, comparison, entries, settings_map, trust
+from percept_obs.figures.studies import causes, chatter, comparison, efficiencies, entries, settings_map, trust
 
 __all__ = [
     "Figure",
@@ -18,6 +18,7 @@ __all__ = [
     "consistency",
     "depth_errors",
     "distance",
+    "efficiencies",
     "entries",
     "error_norm",
     "excitation",

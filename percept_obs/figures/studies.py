@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.ticker import NullFormatter
 
 from percept_obs.figures import base, curves, describe, look
 from percept_obs.figures.base import Drawing, canvas, canvases, figure, legend_above
@@ -115,6 +116,58 @@ def _medians(row: pd.Series) -> str:
         middle, low, high = (f"{value:.2g} {unit}" if np.isfinite(value) else "none" for value in values)
         sentences.append(f"{what} {middle} in the median, {low} to {high} for 16 to 84 % of the runs")
     return "; ".join(sentences)
+
+
+@figure("the table is empty or not from `efficiencies`, or the axes are too few")
+def efficiencies(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawing:
+    """Error over the Cramer-Rao bound against the settling time of every observer, one panel a case.
+
+    Fast ones stand on the left, efficient ones below; nobody stands below the line but by chance.  Observers of which
+    half of the runs do not settle are left out, and named in the text.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        From `percept_obs.studies.efficiencies.efficiencies`.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, ekf, figures, pinhole, record, scenarios
+    >>> from percept_obs.studies.efficiencies import Case, efficiencies
+    >>> seen = [record(scenarios.ma2005_eq35(), 8, Camera(0.05, Gaussian(0.01)), seed) for seed in range(4)]
+    >>> case = Case(PerspectiveSystem(affine(), pinhole()).measure("y1"), seen[:2], seen[2:])
+    >>> figures.efficiencies(efficiencies({"one output": case}, {ekf: [{}]})).text.split(". ")[0]
+    'Error over the Cramer-Rao bound against the settling time, on logarithmic axes'
+    """
+    if not len(table) or not {"case", "ratio", "settling_time"} <= set(table.columns):
+        raise ValueError("the table has no rows; efficiencies(cases) makes one that has")
+    cases, observers = ([*table[name].unique()] for name in ("case", "observer"))
+    columns = min(3, len(cases))
+    lines = -(-len(cases) // columns)
+    parts = [*cases, *["nothing"] * (lines * columns - len(cases))]
+    panels = canvases(axes, parts, 2.6 * lines + 1.2, ncols=columns, nrows=lines, sharex=True, sharey=True)
+    looks = {
+        name: {**look.style(k), "linestyle": "", "markersize": 9 - 4 * (k % 2)} for k, name in enumerate(observers)
+    }
+    for ax in panels[len(cases) :]:
+        ax.set_axis_off()
+    yield "Error over the Cramer-Rao bound against the settling time, on logarithmic axes."
+    for ax, case in zip(panels, cases, strict=False):
+        rows = table[table["case"] == case]
+        ax.set(title=case, xscale="log", yscale="log", xlabel="settling time (s)", ylabel="error / bound")
+        ax.label_outer()
+        ax.tick_params(labelbottom=ax in panels[max(len(cases) - columns, 0) : len(cases)])
+        ax.xaxis.set_minor_formatter(NullFormatter())
+        ax.axhline(1, **look.BOUND)
+        there = rows[np.isfinite(rows["settling_time"]) & np.isfinite(rows["ratio"])]
+        for row in there.itertuples():
+            ax.plot([row.settling_time], [row.ratio], **looks[row.observer])
+        said = [f"{row.observer} {row.ratio:.3g} after {row.settling_time:.2g} s" for row in there.itertuples()]
+        rest = [name for name in rows["observer"] if name not in set(there["observer"])]
+        yield f"{case}: {', '.join(said) or 'nobody settles'}" + (f"; not settled: {', '.join(rest)}." if rest else ".")
+    handles = [Line2D([], [], label=name, **each) for name, each in looks.items()]
+    base.whole(panels[0]).legend(handles=handles, loc="outside upper center", ncols=3, frameon=False)
+    return panels
 
 
 @figure("there is nothing to draw on one of the sides, or there are not two axes")

@@ -22,8 +22,8 @@ FOLDERS = {
     "structure": "competitors pixels scenarios",
     "observability": "",
     "tracking": "",
-    "studies": "all_observers chatter comparison consistency diagnosis fields least_squares likelihood sensitivity "
-    "sweep trust tuning",
+    "studies": "all_observers chatter comparison consistency diagnosis efficiencies fields least_squares likelihood "
+    "sensitivity sweep trust tuning",
     "system": "derivation",
     "recording": "camera_files colmap poses pose_files scenarios stereo_mat track_files utias worked",
     "checking": "",
