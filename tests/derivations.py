@@ -68,8 +68,8 @@ def _observers():
             if family.objection(form) is None:
                 observer = family(form)
                 yield f"{family.key}, {outputs}", observer
-                # the errors of these two are too long to read, or have no dynamics of their own
-                if form is not ONE and family.key not in ("range_identification", "integral_sliding_mode"):
+                # the errors of these are too long to read, or have no dynamics of their own
+                if form is not ONE and family.key not in ("range_identification", "integral_sliding_mode", "gpebo"):
                     yield f"error of {family.key}, {outputs}", observer.error_dynamics()
 
 

@@ -20,7 +20,7 @@ from percept_obs import (
     scenarios,
     track,
 )
-from percept_obs.observers import OBSERVERS, NotIntegrable, ekf, immersion_and_invariance, ismo
+from percept_obs.observers import OBSERVERS, NeedsMotion, NotIntegrable, ekf, immersion_and_invariance, ismo
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.structure import (
     COROLLARIES,
@@ -71,6 +71,8 @@ def test_every_observer_runs_on_the_form_as_it_is(make):
         with pytest.raises(NotIntegrable, match="w has no potential"):
             make(views.pop(0).view.form)
     for seen in views:
+        if isinstance(make.objection(seen.view.form), NeedsMotion):  # one point's motion is not all of this form
+            continue
         run = track(seen, make(seen.view.form), language="python")
         assert np.isfinite(run.estimate[run.unobservable == 0]).all()
         assert run.unobservable[-1] == 0

@@ -8,7 +8,8 @@ from sympy.logic.boolalg import Boolean
 
 from percept_obs.compile.equations import Expressions, Symbols
 from percept_obs.observers.gains import Gain
-from percept_obs.system.forms import CanonicalForm
+from percept_obs.system.forms import CanonicalForm, PartitionedSystem
+from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.validation import checked
 
 M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
@@ -25,6 +26,17 @@ NOISE_GAIN = Gain(
     sigma2, "noise_variance", 0, 0, 1e-3, "1", "variance of the noise whose bias is taken out", sigma2 >= 0, VARIANCE
 )
 """Gain of `noise_bias`."""
+
+
+class NeedsMotion(ValueError):
+    """The form does not know its motion or its surface, or its outputs give no equation of the point by themselves."""
+
+
+def on_surface(form: PartitionedSystem) -> NeedsMotion | None:
+    """Return an error if the form does not know a motion seen on an imaging surface."""
+    if form.motion is None or not isinstance(form.view, ImagingSurface):
+        return NeedsMotion("this form does not know its motion and surface; make it by PerspectiveSystem.measure")
+    return None
 
 
 def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:

@@ -13,6 +13,7 @@ import sympy as sp
 
 from percept_obs.compile import Intermediate
 from percept_obs.system.derivation import Derivation, equals, rates, where
+from percept_obs.system.motion import Motion
 from percept_obs.system.view import View
 from percept_obs.validation import set_fields
 
@@ -67,6 +68,8 @@ class PartitionedSystem:
         All coordinates in the order of the view.
     view : View or None
         View that the outputs belong to.
+    motion : Motion or None
+        Motion X' = A X + b of the point behind it, for observers that need more than the rate; not compared.
 
     See Also
     --------
@@ -86,6 +89,7 @@ class PartitionedSystem:
     parameters: tuple[sp.Symbol, ...]
     coordinates: tuple[sp.Symbol, ...]
     view: View | None = None
+    motion: Motion | None = field(default=None, compare=False)
 
     @property
     def values(self) -> dict[sp.Symbol, float]:
@@ -111,7 +115,8 @@ class PartitionedSystem:
         # a rate that is affine, but not written so, keeps hidden coordinates in w, where their value does not matter
         w = w if not w.free_symbols & set(self.x2) else w.subs(away)
         phi, g = _expanded(self.rate[:n1, :]).subs(away), self.rate[n1:, :]
-        return CanonicalForm(self.x1, self.x2, self.parameters, self.coordinates, self.view, w=w, phi=phi, g=g)
+        own = (self.x1, self.x2, self.parameters, self.coordinates, self.view, self.motion)
+        return CanonicalForm(*own, w=w, phi=phi, g=g)
 
     @cached_property
     def culprits(self) -> tuple[str, ...]:
@@ -148,7 +153,7 @@ class CanonicalForm(PartitionedSystem):
 
     Parameters
     ----------
-    x1, x2, parameters, coordinates, view
+    x1, x2, parameters, coordinates, view, motion
         See `PartitionedSystem`; its rate follows from w, phi and g.
     w : matrix of shape (n2, n1)
     phi : matrix of shape (n1, 1)
@@ -254,6 +259,7 @@ def partition(
     measured: Sequence[str],
     parameters: tuple[sp.Symbol, ...],
     view: View | None = None,
+    motion: Motion | None = None,
 ) -> PartitionedSystem:
     """Divide a system by the names of its measured coordinates; `rate` is in the order of `coordinates`."""
     rates = dict(zip(coordinates, rate, strict=True))
@@ -261,7 +267,7 @@ def partition(
     x1 = tuple(by_name[name] for name in measured)
     x2 = tuple(symbol for symbol in coordinates if symbol not in x1)
     ordered = sp.ImmutableMatrix([rates[symbol] for symbol in (*x1, *x2)])
-    return PartitionedSystem(x1, x2, ordered, parameters, coordinates, view)
+    return PartitionedSystem(x1, x2, ordered, parameters, coordinates, view, motion)
 
 
 def _expanded(matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:

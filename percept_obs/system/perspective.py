@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import Any
@@ -88,7 +88,7 @@ class PerspectiveSystem:
 
         It is expanded, unless roots or letters of the surface's shape would make it long.
         """
-        gradients = _gradients(self.surface)
+        gradients = gradients_on(self.surface)
         moved = self._rate(gradients, self._velocity)
         if self.surface.multiplied_out:
             return moved.expand()
@@ -125,7 +125,8 @@ class PerspectiveSystem:
                 f"cannot measure {', '.join(map(repr, names)) or 'nothing'}: the outputs of the {self.surface.name} "
                 f"are {', '.join(known)}; name at least one of them, each once"
             )
-        return partition(self.coordinates, self.rate, names, self.parameters, self.surface)
+        motion = replace(self.motion, signal=None)  # its numbers may be functions, which no other process can take
+        return partition(self.coordinates, self.rate, names, self.parameters, self.surface, motion)
 
     def measure(self, *names: str) -> CanonicalForm:
         """Canonical form with some coordinates measured.
@@ -157,7 +158,7 @@ class PerspectiveSystem:
 
     def derivation(self) -> Derivation:
         """Derivation of the rate from X' = A X + b, step by step."""
-        surface, motion, gradients = self.surface, self.motion, _gradients(self.surface)
+        surface, motion, gradients = self.surface, self.motion, gradients_on(self.surface)
         y, point = sp.latex(sp.Matrix(surface.image_coordinates)), sp.latex(sp.Matrix(POINT))
         eta = sp.latex(surface.inverse_distance)
         ways = [f"{y_k} = {e}" for y_k, e in zip(surface.image_coordinates, surface.image, strict=True)]
@@ -243,8 +244,8 @@ class PerspectiveSystem:
 
 
 @lru_cache(maxsize=64)  # surfaces are made anew again and again, with the same formulas
-def _gradients(surface: ImagingSurface) -> sp.ImmutableMatrix:
-    """Gradients of the image and the distance at X = m(y), where the distance is 1."""
+def gradients_on(surface: ImagingSurface) -> sp.ImmutableMatrix:
+    """Gradients of the image and the distance at X = m(y), where the distance is 1, shape (n, 3)."""
     gradients = sp.ImmutableMatrix([*surface.image, surface.distance]).jacobian(POINT)
     ray = dict(zip(POINT, surface.ray, strict=True))
     at_one = gradients.subs(surface.distance, 1).subs(dict(surface.roots))
@@ -265,5 +266,5 @@ def _with_plain_angles(entry: sp.Expr, surface: ImagingSurface) -> sp.Expr:
 @lru_cache(maxsize=64)
 def _image_over_distance(surface: ImagingSurface) -> sp.ImmutableMatrix:
     """Gradient of the image times the distance; without symbols if that is linear in the point."""
-    y, gradients = sp.ImmutableMatrix(surface.image_coordinates), _gradients(surface)
+    y, gradients = sp.ImmutableMatrix(surface.image_coordinates), gradients_on(surface)
     return (gradients[:-1, :] + y * gradients[-1, :]).applyfunc(sp.cancel)
