@@ -81,9 +81,7 @@ def test_what_an_observer_needs_can_be_asked_and_is_told_when_it_is_made_anyway(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("make", "form"), [*(p for p in PAIRS if p.values[0] not in WITHOUT_DYNAMICS), (ekf, SQUARE)]
-)
+@pytest.mark.parametrize(("make", "form"), [*(p for p in PAIRS if p.values[0] not in WITHOUT_DYNAMICS), (ekf, SQUARE)])
 def test_error_dynamics_against_a_finite_difference(make, form):
     """Point and observer move a little along their rates; the error changes as its dynamics say."""
     observer = make(form)

@@ -33,7 +33,7 @@ def no_equation(form: CanonicalForm) -> NeedsMotion | None:
     name="GPEBO",
     title="Generalised parameter estimation-based observer (GPEBO) with DREM",
     source="Ortega et al. 2020",
-    needs="both outputs, or one that moves on a plane; the motion",
+    needs="both outputs, or one on a flat image; the motion",
     claim="exponential with the rate gamma, from any start and from infinity, once D^2 is far larger than mu",
     gains=(
         Gain(gamma, "gain", 10, 1, 100, "1/s", "rate of the constants' estimates", gamma > 0, "errors must shrink"),
