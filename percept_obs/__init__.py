@@ -39,6 +39,7 @@ from percept_obs.structure.stages import semigeneral
 from percept_obs.studies.consistency import check_consistency
 from percept_obs.studies.diagnosis import diagnose
 from percept_obs.studies.ensemble import ensemble
+from percept_obs.system.apparent_size import sized
 from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
 from percept_obs.system.motion import Motion, affine, linear, rigid
 from percept_obs.system.perspective import PerspectiveSystem
@@ -122,6 +123,7 @@ __all__ = [
     "scenarios",
     "seen_on",
     "semigeneral",
+    "sized",
     "sliding_mode",
     "smo",
     "sphere",

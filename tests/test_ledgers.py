@@ -23,6 +23,7 @@ from percept_obs.papers import (
     INABA2005,
     MA2005,
     NAMED,
+    SPICA2014,
     Ledger,
     Verdict,
     ma2005_appendix,
@@ -54,6 +55,7 @@ PAPERS = {
     "Inaba": Known(INABA2005, 24, 1000),
     "Chwa": Known(CHWA2019, 37, 1000),
     "De Luca": Known(DE_LUCA2008, 0, 350),
+    "Spica": Known(SPICA2014, 0, 100),
 }
 FEW = 2
 """Slips of each formula that the quick tests try."""

@@ -53,6 +53,8 @@ def seen_on(recording: Recording, surface: ImagingSurface) -> Recording:
         raise ValueError(
             f"the recording has no {', '.join(missing)}, so its rays are not known; measure all of {', '.join(names)}"
         )
+    if surface.radii:
+        raise ValueError(f"rays say nothing of the size that the {surface.name} sees; convert to it without the size")
     order = [recording.names.index(name) for name in names]
 
     def convert(outputs: Array) -> Array:

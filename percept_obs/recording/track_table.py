@@ -51,6 +51,8 @@ def fields_of_recordings(
     if point is None and (gap < math.inf or shortest):
         raise ValueError("gap and shortest split the tracks of points; name the column of these, such as point='id'")
 
+    if camera is not None and surface.radii:
+        raise ValueError(f"pixels say nothing of the size that the {surface.name} sees; give its columns, or no size")
     every = tuple(symbol.name for symbol in surface.image_coordinates)
     inverse = surface.inverse_distance.name
     example = ",".join([time, *([point] if point else []), *(pixels if camera else every)])

@@ -119,7 +119,8 @@ class Plan:
     def loop(self) -> BatchLoop:
         """The loop to compile; a point under a constant motion that varies is moved by the loop itself."""
         surface, varied = self.scenario.surface, set(self.grid.coords)
-        moving = MovingPoint(POINT, surface.parameters, (*surface.image, 1 / surface.distance), surface.distance)
+        image = [entry.subs({radius: surface.values[radius] for radius in surface.radii}) for entry in surface.image]
+        moving = MovingPoint(POINT, surface.parameters, (*image, 1 / surface.distance), surface.distance)
         return BatchLoop(
             self.observer.equations,
             accumulated(self.observer, self.coordinates, self.scale.tolist()),

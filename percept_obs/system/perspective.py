@@ -107,7 +107,8 @@ class PerspectiveSystem:
     def foe(self) -> sp.ImmutableMatrix:
         """Focus of expansion: the image of the translation b."""
         direction = dict(zip(POINT, self.motion.b, strict=True))
-        return sp.ImmutableMatrix([entry.subs(direction, simultaneous=True) for entry in self.surface.image])
+        seen = [entry for entry in self.surface.image if not entry.has(*self.surface.radii)]  # a direction has no size
+        return sp.ImmutableMatrix([entry.subs(direction, simultaneous=True) for entry in seen])
 
     def partition(self, *names: str) -> PartitionedSystem:
         """Divide the coordinates into measured and hidden ones.
@@ -160,7 +161,7 @@ class PerspectiveSystem:
         """Derivation of the rate from X' = A X + b, step by step."""
         surface, motion, gradients = self.surface, self.motion, gradients_on(self.surface)
         y, point = sp.latex(sp.Matrix(surface.image_coordinates)), sp.latex(sp.Matrix(POINT))
-        eta = sp.latex(surface.inverse_distance)
+        eta, directions = sp.latex(surface.inverse_distance), surface.image_coordinates[: len(self.foe)]
         ways = [f"{y_k} = {e}" for y_k, e in zip(surface.image_coordinates, surface.image, strict=True)]
         ways += [f"{surface.inverse_distance} = {1 / surface.distance}"]
         last = (
@@ -213,8 +214,8 @@ class PerspectiveSystem:
                 sp.ImmutableMatrix,
             ),
             "The focus of expansion, where the distance drops out of the image's motion:": (
-                equals(y, self.foe),
-                dict(zip(map(str, surface.image_coordinates), self.foe, strict=True)),
+                equals(sp.latex(sp.Matrix(directions)), self.foe),
+                dict(zip(map(str, directions), self.foe, strict=True)),
             ),
         }
         return Derivation.of(formulas)

@@ -46,13 +46,15 @@ def images_backwards(recording: Recording, first: int, columns: list[int]) -> Ca
     between = step(np.eye(size), np.diff(grid[::-1])[:, None, None], lambda instant, map_: rows[:, instant] @ map_)
     maps = np.stack([*accumulate(between, lambda at, map_: map_ @ at, initial=np.eye(size))])[::-1][index, :3]
     chosen = [surface.image[names.index(recording.names[k])] for k in columns]
-    seen = vectorised(POINT, (*chosen, *surface.bounds), surface.values)
+    shape = {symbol: surface.values[symbol] for symbol in surface.parameters}
+    seen = vectorised((*POINT, *surface.radii), (*chosen, *surface.bounds), shape)
+    sizes = [names.index(str(size)) for size in surface.radii.values()]  # a radius at the distance 1 is seen as it is
 
     def images(x: Array) -> Array:
         image, inverse, doubts = np.split(x, [len(names), len(names) + 1])
         points = maps @ np.concatenate([surface.along(image), inverse, inverse * doubts])
         with np.errstate(all="ignore"):
-            found = np.stack(seen(*points.T), axis=-1)
+            found = np.stack(seen(*points.T, *image[sizes]), axis=-1)
         there = np.asarray(np.isfinite(found).all(axis=1) & (found[:, len(chosen) :] > 0).all(axis=1))
         return np.where(there[:, None], found[:, : len(chosen)], FAR)
 

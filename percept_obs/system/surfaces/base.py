@@ -127,6 +127,11 @@ class ImagingSurface(OnePoint):
         used = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray)))
         return tuple(sorted(used - set(POINT) - set(self.image_coordinates), key=lambda s: s.name))
 
+    @property
+    def radii(self) -> dict[sp.Symbol, sp.Symbol]:
+        """Unknown radii in the image, and the sizes at which they are seen; none but with `sized`."""
+        return {}
+
     @cached_property
     def lengths(self) -> tuple[int, ...]:
         """Power of length of each coordinate, by its value when the point is twice as far; 0 for the parameters."""
