@@ -23,9 +23,9 @@ ALL = list(BY_NAME)
 KEYS = [
     place.removeprefix("forms/")
     for place in unpacked(file_of("observer_lab").read_bytes())
-    if place.startswith("forms/")
+    if place.startswith("forms/") and not place.endswith("+s")
 ]
-"""Names of all forms, as they were printed; deriving them takes a second."""
+"""Names of all forms without a size, as they were printed; deriving them takes a second."""
 B_AT_THE_SIDE = [0.4, 0.3, 0.3]
 PLANE = [0.2, -0.1, 0.9]
 

@@ -135,7 +135,7 @@ test_what_has_no_size_is_refused = refuses(
     (lambda: sized(pinhole()).project([1, 2, 3]), "no radius"),
     (lambda: sized(pinhole(), radius=-1.0), "radius is -1.0"),
     (lambda: sized(SIZED), "sees the size already"),
-    (lambda: diagnose(record(STRAIGHT, 1)), "no usual mistake"),
+    (lambda: diagnose(record(STRAIGHT, 1)), "no usual mistake is of one"),
     (lambda: seen_on(record(scenarios.drive()), SIZED), "rays say nothing of the size"),
     (
         lambda: Recording.from_csv("a.csv", affine(), SIZED, camera=PixelCamera((500, 500), (320, 240))),

@@ -23,7 +23,7 @@ from percept_obs.labs.observer.settings import (
     as_settings,
     schema_of,
 )
-from percept_obs.labs.observer.texts import BLOCKS, BY_NAME, MOTION
+from percept_obs.labs.observer.texts import BLOCKS, BY_NAME, MOTION, RADIUS, SIZE
 from percept_obs.labs.observer.tracks import (
     VARIES,
     fitting,
@@ -44,6 +44,7 @@ from percept_obs.labs.shared.work import motion_work, too_much, within_reach
 from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observers import Observer
 from percept_obs.recording import Camera, Frames, Recording, Scenario
+from percept_obs.system.apparent_size import sized
 from percept_obs.system.motion import Motion, affine
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface
@@ -243,7 +244,9 @@ class ObserverLab(Lab):
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
         recording, chosen, other = self.recorded(settings), settings["start"], settings["believed"]
-        start = {"own": None, "zero": [0.0] * 3, "chosen": chosen["values"]}[chosen["mode"]]
+        size = recording.outputs[0, 2:].tolist()  # if it is seen, its estimate starts there
+        values = [*chosen["values"][:2], *size, chosen["values"][2]]
+        start = {"own": None, "zero": [0.0] * len(values), "chosen": values}[chosen["mode"]]
         believed = affine(other["A"], other["b"]) if other else None
         found = {}
         for name in settings["observers"]:
@@ -305,6 +308,7 @@ def _motion(settings: Settings) -> Motion:
 def _simulated(settings: Settings, motion: Motion, seen_on: ImagingSurface) -> Recording:
     """Recording of a simulated point, as far as it stays in front of the camera."""
     surface = shaped_surface(settings) if settings["surface"] in SHAPES else seen_on
+    surface = sized(surface, RADIUS) if tuple(settings["outputs"]) == SIZE else surface
     scenario = Scenario("the lab's", motion, settings["X0"], settings["duration"], surface)
     noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
     camera = Camera(settings["period"], noise, settings["dropout"])

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from percept_obs.labs.observer.registry import Registry
-from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, WAYS
+from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SIZE, WAYS
 from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, gains, noise, offering, over, own_gains
 from percept_obs.labs.shared.observer_texts import with_all_gains
 from percept_obs.labs.shared.schema import Choice, Group, Names, Number, Optional, Row, Schema, Settings, vector
@@ -74,7 +74,7 @@ SCHEMA = Schema(
         about="the normal vector of a plane",
     ),
     xi=Number(0.8, 0, 1, (0, 1), 0.01, label="ξ", about="of the mirror or lens of the unified model"),
-    outputs=Names(["y1", "y2"], ("y1", "y2"), label="Measured outputs", about="names of what is measured"),
+    outputs=Names(["y1", "y2"], SIZE, label="Measured outputs", about="names of what is measured"),
     observers=Names(["identifier_based"], tuple(BY_NAME), about="names"),
     gains=Group({}, about="for each observer, its gains by name"),
     switches=Group({n: Choice(own, WAYS[n]) for n, own in OWN_SWITCH.items()}, partial=True, about="by observers"),

@@ -18,6 +18,7 @@ from percept_obs.observability.maps import map_kernel
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.recording.simulation import point_in_motion
+from percept_obs.system.apparent_size import sized
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.motion import affine
 from percept_obs.system.perspective import PerspectiveSystem
@@ -36,6 +37,14 @@ BLOCKS = MappingProxyType({"A": MOTION.A, "b": MOTION.b})
 """Blocks of a motion by the letters that may be typed."""
 
 
+SIZE = ("y1", "y2", "s")
+"""Outputs of the pinhole with the apparent size of a sphere."""
+OF_SIZE = ("identifier_based", "extended_kalman")
+"""Observers that are printed for it: all others would make the file a seventh larger."""
+RADIUS = 1.2
+"""Radius of the sphere in metres; no observer knows it."""
+
+
 def key_of(surface: str, outputs: Iterable[str]) -> str:
     """Name of a form: what is seen, and what of it is measured."""
     return f"{surface} {'+'.join(outputs)}"
@@ -50,7 +59,7 @@ def system_on(surface: ImagingSurface) -> PerspectiveSystem:
 @lru_cache(maxsize=64)
 def form_on(surface: ImagingSurface, outputs: tuple[str, ...]) -> PartitionedSystem:
     """Affine motion on a surface, in the canonical form if there is one."""
-    system = system_on(surface).partition(*outputs)
+    system = system_on(sized(surface) if outputs == SIZE else surface).partition(*outputs)
     return system if system.culprits else system.canonical_form()
 
 
@@ -82,6 +91,7 @@ def model_for_the_page() -> Texts:
         "surfaces": {
             name: surface_for_the_page(make(), system_of(name).output_choices) for name, make in SURFACES.items()
         },
+        "radius": RADIUS,
         "observers": {name: texts_of_observer(make, ways[name]) for name, make in BY_NAME.items()},
     }
 
@@ -94,7 +104,7 @@ def surface_for_the_page(surface: ImagingSurface, outputs: Iterable[tuple[str, .
     return {
         "coordinates": [s.name for s in surface.coordinates],
         "shape": [s.name for s in shape],
-        "outputs": outputs,
+        "outputs": (*outputs, SIZE) if surface == SURFACES["pinhole"]() else outputs,
         "project": function_source((*POINT, *shape), (*surface.image, surface.distance)),
         "ray": function_source((*surface.image_coordinates, *shape), surface.ray),
         "foe": function_source((*system.parameters,), tuple(system.foe)),
@@ -127,7 +137,7 @@ def _rates(form: PartitionedSystem) -> Iterable[tuple[sp.Symbol, sp.Expr]]:
 def _of_canonical(form: CanonicalForm, letters: Mapping[str, sp.Symbol]) -> Texts:
     threshold = sp.Symbol("threshold", real=True)
     found, circle = instantaneous(form), None
-    if found.growth is not None:
+    if found.growth is not None and len(form.x1) == 2:
         centre, radius = found.circle(threshold)
         circle = function_source((*form.parameters, threshold), (*centre, radius))
     return {
@@ -148,3 +158,9 @@ def texts_for_the_page() -> Parts:
     for surface in SURFACES:
         for outputs in system_of(surface).output_choices:
             yield f"forms/{key_of(surface, outputs)}", form_for_the_page(form_of(surface, outputs), BY_NAME)
+    form = form_for_the_page(form_of("pinhole", SIZE), {name: BY_NAME[name] for name in OF_SIZE})
+    others = BY_NAME.keys() - {*OF_SIZE}
+    refused = dict.fromkeys(
+        sorted(others), "with the size, this page has only the identifier-based observer and the EKF"
+    )
+    yield f"forms/{key_of('pinhole', SIZE)}", {**form, "refused": refused}

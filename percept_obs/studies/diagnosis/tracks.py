@@ -86,7 +86,7 @@ def track_of(recording: Recording) -> Track:
     """Track of a recording where its motion is known at all offsets that are tried, without its spikes."""
     surface, time = recording.imaging_surface, recording.time
     if surface.radii:
-        raise ValueError(f"the {surface.name} sees a size, of which no usual mistake is known; use seen_on() without it")
+        raise ValueError(f"the {surface.name} sees a size, and no usual mistake is of one; use seen_on() without it")
     known = recording.motion.signal.times if recording.motion.signal else None
     inside = np.ones(len(time), dtype=bool)
     if known is not None:

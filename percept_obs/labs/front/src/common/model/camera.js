@@ -50,12 +50,18 @@ export class PointCamera {
     const seen = memory.once("seen", settings, (read) => this.see(read, functions), functions.project);
     if (seen.problem) return seen;
     const count = seen.time.length;
+    const each = this.drawsFor(settings);
     const make = (read) => {
-      const drawing = ({ noise, seed }) => draws(noise.kind, seed, count, this.drawsOf);
-      const drawn = memory.once("draws", read, drawing, count);
+      const drawing = ({ noise, seed }) => draws(noise.kind, seed, count, each);
+      const drawn = memory.once("draws", read, drawing, count, each);
       return { ...seen, outputs: /** @type {any} */ (this).sampled(seen, read, drawn) };
     };
-    return memory.once("samples", settings, make, seen);
+    return memory.once("samples", settings, make, seen, each);
+  }
+
+  /** How many outputs a sample of settings has. */
+  drawsFor(_settings) {
+    return this.drawsOf;
   }
 
   /** Times at which the motion has kinks. */

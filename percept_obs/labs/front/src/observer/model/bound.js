@@ -1,11 +1,13 @@
 // The Cramer-Rao bound along the truth, the same numbers as cramer_rao() in Python.
 
 import { alongSteps } from "../../common/model/runge_kutta.js";
+import { seesSize } from "./size.js";
 
 const N = 3;
 
 /** Why settings have no bound, or nothing. */
-export function noBound({ scenario, noise }, { recordings }) {
+export function noBound({ scenario, noise, outputs }, { recordings }) {
+  if (seesSize({ outputs })) return "Of the size no bound is drawn here; cramer_rao() in Python has it.";
   if (scenario in recordings) return "There is no bound of a recording: it does not say how large its noise is.";
   return noise.size > 0
     ? ""

@@ -3,6 +3,7 @@
 import { errorOf, PointCamera } from "../../common/model/camera.js";
 import { derived } from "../../common/model/derived.js";
 import { known, withColumns } from "../../common/model/tables.js";
+import { seesSize } from "./size.js";
 import { breaksOf, isTyped, typedAlong, typedRows } from "../../common/model/typed.js";
 
 export class Camera extends PointCamera {
@@ -44,13 +45,19 @@ export class Camera extends PointCamera {
     };
   }
 
+  drawsFor(settings) {
+    return seesSize(settings) ? 3 : 2;
+  }
+
   sampled({ truth }, { noise: { kind, size }, dropout }, { shape, loss }) {
     const outputs = new Float64Array(shape.length);
+    const each = shape.length / loss.length;
+    const exact = (k, c) => (c < 2 ? truth[3 * k + c] : this.model.radius * truth[3 * k + 2]);
     for (let k = 0; k < loss.length; k++) {
       const lost = k > 0 && loss[k] < dropout;
-      for (let c = 0; c < 2; c++) {
-        const error = errorOf(kind, size, shape[2 * k + c]);
-        outputs[2 * k + c] = lost ? NaN : truth[3 * k + c] + error;
+      for (let c = 0; c < each; c++) {
+        const error = errorOf(kind, size, shape[each * k + c]);
+        outputs[each * k + c] = lost ? NaN : exact(k, c) + error;
       }
     }
     return outputs;

@@ -4,6 +4,10 @@ import { userDefined, durationOf, list, NOISES, script, trackings } from "../../
 import { switchOf } from "../../common/model/settings.js";
 import { keyOf } from "./kernels.js";
 import { isTyped } from "../../common/model/typed.js";
+import { seesSize, startWithSize } from "./size.js";
+
+/** Text of the size that an estimate starts from. */
+const SEEN = { zero: "0", chosen: "recording.outputs[0, 2]" };
 
 export function pythonOf(
   shown,
@@ -14,7 +18,10 @@ export function pythonOf(
   const names = new Set(["PerspectiveSystem", "track"]);
   const recorded = model.recordings[settings.scenario];
   const own = userDefined(model.own, [settings.surface, ...settings.observers]);
-  const surface = model.own[settings.surface]?.call ?? `${settings.surface}()`;
+  const sized = seesSize(settings);
+  const plain = model.own[settings.surface]?.call ?? `${settings.surface}()`;
+  const surface = sized ? `sized(${plain})` : plain;
+  if (sized) names.add("sized");
   const lines = [
     ...own.lines,
     ...(recorded ? ["# recording = the one that you gave to the lab", ""] : simulation(shown, names, model)),
@@ -27,7 +34,8 @@ export function pythonOf(
   lines.push(`form = PerspectiveSystem(${motion}(), ${surface}).${form.w ? "measure" : "partition"}(${outputs})`);
   const options = /** @type {string[]} */ ([]);
   const { mode, values } = settings.start;
-  if (mode !== "own") options.push(`start=${list(mode === "zero" ? [0, 0, 0] : values)}`);
+  const asked = startWithSize(mode === "zero" ? [0, 0, 0] : values, sized ? [0, 0, [SEEN[mode]]] : []);
+  if (mode !== "own") options.push(`start=${list(asked)}`);
   if (settings.hold !== "zero") options.push(`hold="${settings.hold}"`);
   if (settings.believed) {
     lines.push(`believed = affine(${matrix(settings.believed.A)}, ${list(settings.believed.b)})`);
@@ -88,7 +96,8 @@ function simulation(shown, names, model) {
   const noise = `${NOISES[settings.noise.kind]}(${settings.noise.size})`;
   const shape = { plane: list(settings.normal), unified: settings.xi }[settings.surface];
   const own = model.own[settings.surface]?.call;
-  const surface = own ?? `${settings.surface}(${shape ?? ""})`;
+  const plain = own ?? `${settings.surface}(${shape ?? ""})`;
+  const surface = seesSize(settings) ? `sized(${plain}, ${model.radius})` : plain;
   return [
     ...motionOf(settings, model),
     `scenario = Scenario("from the lab", motion, ${list(settings.X0)}, ${durationOf(shown)}, ${surface})`,

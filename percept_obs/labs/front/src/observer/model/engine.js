@@ -11,6 +11,7 @@ import { Camera, constantMotion, shapeOf, varies } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { windowed } from "./measures.js";
 import { divides, sharesOf, withoutNoise } from "./shares.js";
+import { drawn, outputsOf, seesSize, startWithSize, withoutSize, withSize } from "./size.js";
 
 /** An image coordinate that is as good as infinite, and what is next to nothing beside a length. */
 const INFINITY = 1e6;
@@ -31,13 +32,15 @@ export class Engine extends Runner {
   run(settings, functions, whole = true) {
     const { coordinates: names } = this.model.surfaces[settings.surface];
     const form = this.model.forms[keyOf(settings)];
-    const { measured, hidden } = form;
+    const { measured, hidden } = drawn(settings, form);
+    const sized = seesSize(settings);
     const { tolerance, settledPart, judged } = this.model;
     const result = {
       settings,
       ...this.camera.record(settings, functions),
       ...this.geometry(settings, functions, form),
-      ...{ width: 3, sampled: 2, names, measured, hidden, hiddenNames: hidden.map((c) => names[c]) },
+      ...{ sampled: sized ? 3 : 2, radius: sized ? this.model.radius : 0 },
+      ...{ width: 3, names, measured, hidden, hiddenNames: hidden.map((c) => names[c]) },
       ...{ tolerance, settledPart, judged, runs: [], inside: [] },
       ...{ bound: null, shares: null, excitation: null, whole: false },
     };
@@ -48,10 +51,12 @@ export class Engine extends Runner {
       const isInside = (k) => (truth[3 * k] - y1) ** 2 + (truth[3 * k + 1] - y2) ** 2 < radius * radius;
       result.inside = spansOf(time.length, isInside).map(({ first, last }) => [time[first], time[last]]);
     }
-    const inputs = this.inputs(settings, result, functions);
-    const asked = estimatesAsked(settings, result, inputs);
+    const all = withSize(result, form, this.model.radius);
+    const inputs = this.inputs(settings, all, functions);
+    const asked = estimatesAsked(settings, all, inputs);
     const kernelOf = (name) => form.observers[name][switchOf(settings, name)];
-    result.runs = this.followAll(settings, result, inputs, kernelOf, functions, asked);
+    const runs = this.followAll(settings, all, inputs, kernelOf, functions, asked);
+    result.runs = sized ? runs.map(withoutSize) : runs;
     result.bound = this.bound(settings, result, inputs, functions);
     if (divides(settings, this.model)) {
       this.other ??= new Engine(this.model);
@@ -62,7 +67,8 @@ export class Engine extends Runner {
 
   /** A result with all that is read off it. */
   completed(result, functions) {
-    return { ...result, excitation: this.excitation(result, functions), whole: true };
+    const all = withSize(result, this.model.forms[keyOf(result.settings)], this.model.radius);
+    return { ...result, excitation: this.excitation(all, functions), whole: true };
   }
 
   inputs(settings, result, functions) {
@@ -78,7 +84,8 @@ export class Engine extends Runner {
     };
     const table = memory.once("known", settings, believe, lines);
     const { hold, start } = settings;
-    return this.layOut(result, lines, table, hold, exact && measured.map((c) => exact[c]), start.mode === "own");
+    const columns = exact && outputsOf(exact, measured, this.model.radius);
+    return this.layOut(result, lines, table, hold, columns, start.mode === "own");
   }
 
   /** The least relative error that the noise leaves, where it is drawn and there is one. */
@@ -99,10 +106,11 @@ export class Engine extends Runner {
     return distanceError(right, found, estimate, width);
   }
 
-  excitation({ settings, time, truth, outputs, measured, hidden }, functions) {
+  excitation({ settings, time, truth, outputs, measured, hidden, width, sampled }, functions) {
     const window = Math.min(settings.window, time[time.length - 1] - time[0]);
     if (!functions.w) return { window, time: NONE, smallest: NONE, begun: { time: NONE, smallest: NONE } };
-    const columns = measured.map((c) => (truth ? columnOf(truth, 3, c) : lastSamples(columnOf(outputs, 2, c))));
+    const seen = (c) => (truth ? columnOf(truth, width, c) : lastSamples(columnOf(outputs, sampled, c)));
+    const columns = measured.map(seen);
     const { motion, shape } = this.camera.motion(settings, functions);
     const w = evaluated(functions.w, columns, knownAt(motion, shape, time), hidden.length * measured.length);
     return { window, ...windowed(time, w, hidden.length, measured.length, window) };
@@ -162,7 +170,7 @@ export function translationTowards(place, settings, functions) {
 
 /** The estimates at the first sample: that sample and 0, or what is asked for. */
 function estimatesAsked({ start }, { width, measured }, { columns }) {
-  if (start.mode === "chosen") return start.values;
+  if (start.mode === "chosen") return startWithSize(start.values, columns);
   const asked = new Array(width).fill(0);
   if (start.mode === "own") measured.forEach((c, m) => (asked[c] = columns[m][0]));
   return asked;

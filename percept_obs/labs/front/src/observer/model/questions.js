@@ -37,6 +37,7 @@ function asked(before, after, kept = before) {
 const CURVE = { A: [[0, 0, -0.24], [0, 0, 0], [0.24, 0, 0]], b: towards([0, 0.05], 1.6), X0: [5.5, 0.55, 11] };
 const ABOVE = { b: towards([0.1, -0.22], 1.3), X0: [1.1, 0.9, 11] };
 const STRAIGHT = { X0: [1.76, -0.44, 11] };
+const BALL = { X0: [1.2, -0.3, 7.5], gains: { [OBSERVER]: { gain: 20 } } };
 const HIDDEN = { A: [[0, 1, 0], [0, 0, 0], [0, 0, 0]], b: [1, 0, 0], X0: [-1, 0.4, 4], guess: 2 };
 
 const errorsOf = (result) => result.runs[0].error;
@@ -80,6 +81,25 @@ export const QUESTIONS = [
     holds: ({ shown }) => {
       const apart = shown.truth.filter((_, k) => k % 3 < 2).map((value, k) => Math.abs(value - shown.truth[k % 2]));
       return Math.max(...apart) < 1e-9 && !settles(shown);
+    },
+  },
+  {
+    name: "size",
+    chip: "See its size?",
+    ask: "Straight at a ball: you also see how large it is, but do not know its radius. Is its distance found?",
+    answers: ["Yes, as it grows", "Only with its radius", "No"],
+    right: 0,
+    ...asked(BALL, { ...BALL, outputs: ["y1", "y2", "s"] }),
+    kept: "before: no size",
+    tells: "Yes. It grows, and the faster the nearer it is. The circle in which nothing is learnt is gone.",
+    on: "image",
+    note: "it grows",
+    spot: () => ({}),
+    holds: ({ shown, ghost }) => {
+      const { b, threshold } = shown.settings;
+      const size = columnOf(shown.truth, 3, 2).map((value) => shown.radius * value);
+      const grows = size.every((value, k) => !k || value > size[k - 1]);
+      return grows && size.every((value) => Math.abs(b[2]) * value > threshold) && settles(shown) && !settles(ghost);
     },
   },
   {

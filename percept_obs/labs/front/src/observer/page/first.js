@@ -130,7 +130,8 @@ export class ObserverFirst extends FirstScreen {
       expects: expected && speedsOf(expected, settings.believed ?? motion)[1],
       movable: rigid || (state && !varies(settings, lab.model)),
       foe: shown.foe,
-      radius: radiusOf(shown),
+      radius: radiusOf(shown, shown.radius * y[2]),
+      size: shown.radius * y[2],
       single: shown.measured.length === 1 ? shown.measured[0] : null,
     };
     return this.seen;

@@ -45,6 +45,7 @@ export function drawImage(screen, scene, motion, note) {
   const colour = theme.lines[seen.run.order];
   const [gx, gy] = on(seen.estimate);
   if (!why) view.ring(within(gx, 12, width - 12), within(gy, 12, height - 12), 11, colour);
+  if (seen.size) view.ring(px, py, seen.size * scale, theme.ink, 2);
   view.dot(px, py, 6, theme.ink);
   if (note) view.note(...(note.at === "estimate" ? [gx, gy + 13] : [px, py + 8]), note.text);
   view.end();

@@ -66,7 +66,7 @@ export function unseenSpans(shown) {
   const radius = radiusOf(shown);
   if (!truth?.length || !foe || !radius) return [];
   const text = `${measured.length > 1 ? "" : measured[0] ? "row " : "column "}too near the focus`;
-  const spans = spansOf(time, (k) => measuredApart(truth, k, foe, measured) < radius);
+  const spans = spansOf(time, (k) => measuredApart(truth, k, foe, measured, shown.radius) < radius);
   return spans.map(([begin, end]) => ({ begin, end, text }));
 }
 
@@ -140,15 +140,16 @@ function isSettled({ runs: [{ settling }], time, settledPart }) {
   return settled(settling, time.at(-1) - time[0], settledPart);
 }
 
-/** Radius in the image of the circle in which an instant tells too little. */
-export function radiusOf({ circle, settings }) {
+/** Radius in the image of the circle in which an instant tells too little; a point that is seen larger leaves none. */
+export function radiusOf({ circle, settings }, size = 0) {
   if (circle) return Math.abs(circle[2]);
-  return settings.surface === "pinhole" && settings.b[2] ? settings.threshold / Math.abs(settings.b[2]) : null;
+  const radius = settings.surface === "pinhole" && settings.b[2] ? settings.threshold / Math.abs(settings.b[2]) : 0;
+  return radius > size ? Math.sqrt(radius ** 2 - size ** 2) : null;
 }
 
-/** Distance in the image from the focus of expansion, as far as it is measured. */
-function measuredApart(truth, k, foe, measured) {
-  return Math.hypot(...measured.map((c) => truth[3 * k + c] - foe[c]));
+/** Distance in the image from the focus of expansion, as far as it is measured, and the size if that is. */
+function measuredApart(truth, k, foe, measured, radius) {
+  return Math.hypot(radius * truth[3 * k + 2], ...measured.map((c) => truth[3 * k + c] - foe[c]));
 }
 
 /** First and last time of each part in which a condition holds. */

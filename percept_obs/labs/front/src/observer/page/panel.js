@@ -10,7 +10,10 @@ import { axesOf } from "../model/axes.js";
 
 /** Labels of the settings in the page. */
 export const WORDS = {
-  outputs: { kind: "choice", choices: { "y1+y2": "y1 and y2", y1: "y1 only", y2: "y2 only" } },
+  outputs: {
+    kind: "choice",
+    choices: { "y1+y2": "y1 and y2", y1: "y1 only", y2: "y2 only", "y1+y2+s": "both, and the size s" },
+  },
   X0: { name: "X0 {}", label: "start {}" },
   normal: { label: "normal {}" },
   noise: NOISE,

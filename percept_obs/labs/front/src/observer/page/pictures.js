@@ -36,7 +36,8 @@ const BUILD = {
     for (const c of [0, 1]) {
       const label = shown.names[c];
       if (shown.measured.includes(c)) {
-        lines.push(line(`${label} sampled`, shown.time, columnOf(shown.outputs, 2, c), theme.sample, SOLID));
+        const samples = columnOf(shown.outputs, shown.sampled, c);
+        lines.push(line(`${label} sampled`, shown.time, samples, theme.sample, SOLID));
       }
       lines.push(...linesOf(shown, ghost, theme, label, ({ width }, rows) => columnOf(rows, width, c)));
     }
