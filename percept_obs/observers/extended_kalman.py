@@ -8,6 +8,7 @@ from percept_obs.observers.parts import first_seen, hats
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.state_view import StateView
 from percept_obs.system.surfaces import ImagingSurface
 
 R, Q, Q2, QW, QV, P1, P2 = sp.symbols("R Q Q2 Q_w Q_v P01 P02", real=True)
@@ -53,7 +54,8 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
         P' = F P + P F^T + Q I + Q2 I2 + G diag(Q_w, Q_w, Q_w, Q_v, Q_v, Q_v) G^T
 
     with I2 = 1 for hidden coordinates, else 0, and G, the Jacobian of the rate with respect to angular velocity and
-    velocity: their noise moves each coordinate by what it does to the image there.  Without an imaging surface G is 0.
+    velocity: their noise moves each coordinate by what it does to the image there.  In a `StateView` they are its known
+    signals; in other views G is 0.
 
     At a sample of each measured output y_j in turn, with column P_j of P::
 
@@ -88,8 +90,9 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
     rate = form.rate.xreplace(dict(zip(x, x_hat, strict=True)))
     F = rate.jacobian(x_hat)
     P = sp.ImmutableMatrix(size, size, lambda i, j: sp.Symbol(f"P{min(i, j) + 1}{max(i, j) + 1}", real=True))
-    G = _of_the_motion(form).xreplace(dict(zip(x, x_hat, strict=True)))
-    doubt = sp.diag(*(Q for _ in form.x1), *(Q + Q2 for _ in form.x2)) + G * sp.diag(QW, QW, QW, QV, QV, QV) * G.T
+    G, densities = _of_the_motion(form)
+    G = G.xreplace(dict(zip(x, x_hat, strict=True)))
+    doubt = sp.diag(*(Q for _ in form.x1), *(Q + Q2 for _ in form.x2)) + G * sp.diag(*densities) * G.T
     P_rate = F * P + P * F.T + doubt
 
     def state(estimate: sp.Matrix, covariance: sp.Matrix) -> tuple[sp.Expr, ...]:
@@ -99,18 +102,26 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
     for k, y in enumerate(form.x1):
         gain = P.col(k) / (P[k, k] + R)
         updates.append(state(sp.Matrix(x_hat) + gain * (y - x_hat[k]), P - gain * P.row(k)))
-    spread = sp.diag(*(P1 + (R - P1) * seen for seen in first_seen(form.x1)), *(P2 for _ in form.x2))
+    usual = form.view.usual if isinstance(form.view, StateView) else {}
+    hidden = [P2 * sp.Float(usual.get(symbol, 1)) ** 2 if symbol in usual else P2 for symbol in form.x2]
+    spread = sp.diag(*(P1 + (R - P1) * seen for seen in first_seen(form.x1)), *hidden)
     return Derived(state(x_hat, P), state(rate, P_rate), state(x_hat, spread), update=tuple(updates), covariance=P)
 
 
-def _of_the_motion(form: PartitionedSystem) -> sp.ImmutableMatrix:
-    """Derivative of the rate with respect to angular velocity and velocity, shape (n, 6); 0 if there is no surface."""
+def _of_the_motion(form: PartitionedSystem) -> tuple[sp.ImmutableMatrix, list[sp.Expr]]:
+    """Derivative of the rate with respect to known velocities, shape (n, q), and the densities of their noise.
+
+    On an imaging surface they are angular velocity and velocity; there are none if nothing is known of the view.
+    """
     x = (*form.x1, *form.x2)
+    if isinstance(form.view, StateView):
+        motion = form.view.motion
+        return form.rate.jacobian(motion.parameters), [QV if length else QW for length in motion.lengths]
     if not isinstance(form.view, ImagingSurface):
-        return sp.ImmutableMatrix.zeros(len(x), 6)
+        return sp.ImmutableMatrix.zeros(len(x), 0), []
     moved = PerspectiveSystem(rigid(), form.view)
     order = [moved.coordinates.index(symbol) for symbol in x]
-    return moved.rate.extract(order, [0]).jacobian(moved.motion.parameters[:6])
+    return moved.rate.extract(order, [0]).jacobian(moved.motion.parameters[:6]), [QW] * 3 + [QV] * 3
 
 
 ekf = extended_kalman

@@ -1,0 +1,115 @@
+"""IMUs: their files, and samples of a simulated one with noise and with biases that walk."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from percept_obs.compile import Array
+from percept_obs.recording.camera import Seed, seeded
+from percept_obs.recording.text_table import NANOSECONDS, Clock, PathLike, read_table
+from percept_obs.system.inertial import imu
+from percept_obs.system.motion import Motion
+from percept_obs.validation import checked, positive
+
+NAMES = ("t", "w_x", "w_y", "w_z", "a_x", "a_y", "a_z")
+EXAMPLE = "1403636579758555392,-0.0991,0.1472,0.0272,8.1476,-0.3759,-2.4026"
+
+
+@checked
+@dataclass(frozen=True)
+class Imu:
+    """Errors of an IMU: noise and biases, the same in each axis.
+
+    The defaults are those of the Bosch BMI160 of many telephones, as the TUM VI benchmark gives them (Schubert et al.
+    2018), and biases that are left after a calibration.
+
+    Parameters
+    ----------
+    turning_noise, force_noise : float
+        Densities of the noise, in rad/s and m/s^2 per root of Hz.
+    turning_bias, force_bias : float
+        Standard deviations of the biases at the beginning, in rad/s and m/s^2.
+    turning_walk, force_walk : float
+        How fast biases walk, in rad/s and m/s^2 per root of a second.
+    rate : float
+        Samples a second.
+
+    See Also
+    --------
+    percept_obs.scenarios.held_phone : Has one.
+
+    Examples
+    --------
+    >>> Imu().turning_noise
+    0.00016
+    """
+
+    turning_noise: float = 1.6e-4
+    force_noise: float = 2.8e-3
+    turning_bias: float = 0.01
+    force_bias: float = 0.1
+    turning_walk: float = 2.2e-5
+    force_walk: float = 8.6e-4
+    rate: float = 200.0
+
+    def measured(self, motion: Motion, duration: float, seed: Seed) -> tuple[Motion, Callable[[Array], Array]]:
+        """Return an IMU's motion as this one measures it, and its true biases as a function of times, shape (K, 6)."""
+        positive(rate=self.rate, duration=duration)
+        draw = seeded(seed)
+        times = np.arange(np.ceil(duration * self.rate) + 2) / self.rate
+        pairs = (
+            (self.turning_noise, self.force_noise),
+            (self.turning_bias, self.force_bias),
+            (self.turning_walk, self.force_walk),
+        )
+        noise, bias, walk = (np.repeat(pair, 3) for pair in pairs)
+        steps = draw.normal(size=(len(times), 6)) * walk / np.sqrt(self.rate)
+        biases = draw.normal(size=6) * bias + np.cumsum(steps, axis=0)
+        samples = motion.known(times) + biases + draw.normal(size=(len(times), 6)) * noise * np.sqrt(self.rate)
+
+        def at(instants: Array) -> Array:
+            return np.stack([np.interp(instants, times, column) for column in biases.T], axis=-1)
+
+        return imu(samples[:, :3], samples[:, 3:], times), at
+
+
+@checked
+def read_imu(path: PathLike, clock: Clock = NANOSECONDS) -> Motion:
+    r"""Return the samples of an IMU in a file of EuRoC or TUM VI, ``imu0/data.csv``, in the IMU's axes.
+
+    Parameters
+    ----------
+    path : path
+        Rows of nanoseconds, angular velocity x, y, z in rad/s and specific force x, y, z in m/s^2, separated by commas.
+    clock : Clock
+        Of the file, as for `read_euroc`.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it has too few columns, a cell is not a finite number, or times do not increase.
+
+    See Also
+    --------
+    percept_obs.read_euroc : Poses of the same benchmark.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "data.csv"
+    ...     _ = file.write_text("0,0,0,0.1,0,-9.8,0\n5000000,0,0,0.1,0,-9.8,0\n")
+    ...     read_imu(file).known(0.005).tolist()
+    [[0.0, 0.0, 0.1, 0.0, -9.8, 0.0]]
+    """
+    table = read_table(path, NAMES, ",", EXAMPLE)
+    columns = np.stack([table.numbers(name, gaps=False) for name in NAMES[1:]], axis=-1)
+    try:
+        return imu(columns[:, :3], columns[:, 3:], table.seconds(NAMES[0], clock))
+    except ValueError as error:
+        raise ValueError(f"{table.file}: {error}") from None

@@ -1,0 +1,100 @@
+"""Simulation of a state that no imaging surface sees."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from percept_obs.compile import Array, right_hand_side
+from percept_obs.compile.equations import Equations
+from percept_obs.recording.camera import Scene
+from percept_obs.recording.path import times_of, varying_path
+from percept_obs.system.motion import Motion
+from percept_obs.system.state_view import StateView
+from percept_obs.validation import checked, set_fields
+
+
+@checked
+@dataclass(frozen=True, eq=False)
+class StateScenario(Scene):
+    """A state in motion, seen in a `StateView`.
+
+    Parameters
+    ----------
+    name : str
+    seen : StateView
+    motion : Motion
+        With numbers, of the view's kind.
+    state : array of shape (n,)
+        At time 0.
+    duration : float
+        In seconds.
+    measured : Motion, optional
+        As an observer knows the motion, such as by an IMU; the motion itself when left out.
+    constants : function of times, optional
+        Entries of the state that the true motion does not have, such as biases of what was measured: an array of
+        shape (K, q) for the last q entries, which are 0 for the true motion.
+    source : str
+
+    Raises
+    ------
+    ValueError
+        If the state is not finite, or the duration not positive.
+
+    See Also
+    --------
+    record : Simulates a recording of it.
+
+    Examples
+    --------
+    >>> from percept_obs import record
+    >>> from percept_obs.recording.scenarios import own_ship_turns
+    >>> record(own_ship_turns(), 20).names
+    ('y3',)
+    """
+
+    name: str
+    seen: StateView
+    motion: Motion
+    state: Sequence[float]
+    duration: float
+    measured: Motion | None = None
+    constants: Callable[[Array], Array] | None = None
+    source: str = ""
+    unit: float = 1.0
+
+    def __post_init__(self) -> None:
+        set_fields(self, state=self._check("state", self.state, [symbol.name for symbol in self.seen.state]))
+
+    @property
+    def view(self) -> StateView:
+        """The view."""
+        return self.seen
+
+    @property
+    def known_motion(self) -> Motion:
+        """Motion as an observer knows it."""
+        return self.measured or self.motion
+
+    @cached_property
+    def _flow(self) -> Callable[..., list[float]]:
+        return right_hand_side(Equations(self.seen.state, self.seen.rate, (), self.motion.parameters), {})
+
+    def coordinates(self, times: ArrayLike) -> Array:
+        """Return true coordinates at times from 0 on that do not decrease, shape (K, n)."""
+        times = times_of(times, len(self.state))
+        signal = self.motion.signal
+        breaks = () if signal is None else signal.breaks(times[-1])
+
+        def rate(time: float, state: Array) -> ArrayLike:
+            return self._flow(state, (), self.motion.known(time)[0])
+
+        states = varying_path(rate, np.array(self.state), times, breaks)
+        if self.constants is not None:
+            found = np.asarray(self.constants(times), dtype=float)
+            states[:, -found.shape[1] :] = found
+        return self.seen.project(states)

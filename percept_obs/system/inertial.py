@@ -1,0 +1,67 @@
+"""Camera and IMU: a landmark, the camera's speed and gravity in its own frame, with biases of the IMU as states."""
+
+from functools import cache
+from typing import Any
+
+import sympy as sp
+from numpy.typing import ArrayLike
+
+from percept_obs.system.motion import Motion, bound, cross
+from percept_obs.system.state_view import StateView
+
+w, a, p, v, g, b_w, b_a = (
+    sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w", "a", "p", "v", "g", "b_w", "b_a")
+)
+y1, y2, y3 = sp.symbols("y1:4", real=True)
+
+
+def imu(angular_velocity: Any = None, specific_force: Any = None, times: ArrayLike | None = None) -> Motion:
+    """Return the motion that an IMU knows: its angular velocity w in rad/s and specific force a in m/s^2.
+
+    Parameters
+    ----------
+    angular_velocity, specific_force : arrays of shape (3,) or (K, 3), functions of time, optional
+        In the camera's axes; symbols when left out.  The specific force is the acceleration without gravity.
+    times : array of shape (K,), optional
+        Times in seconds of samples.
+
+    See Also
+    --------
+    camera_with_imu : The view of it.
+
+    Examples
+    --------
+    >>> imu().b.T
+    Matrix([[a1, a2, a3]])
+    """
+    return bound("IMU's", cross(-w), a, [(angular_velocity, w), (specific_force, a)], times)
+
+
+@cache
+def camera_with_imu() -> StateView:
+    """Return the view of a landmark by a camera with an IMU, whose biases are not known.
+
+    With the landmark p, the camera's velocity v and gravity g in the camera's frame::
+
+        p' = -(w - b_w) x p - v,  v' = -(w - b_w) x v + (a - b_a) + g,  g' = -(w - b_w) x g
+
+    (Hamel and Samson 2017 without biases.)  Measured are y1 = p1/p3 and y2 = p2/p3.  Without acceleration in the world
+    p and v scaled alike make the same pictures.
+
+    See Also
+    --------
+    imu : The motion.
+
+    Examples
+    --------
+    >>> camera_with_imu().partition("y1", "y2").culprits
+    ('v1', 'v2', 'v3', 'y3')
+    """
+    W = cross(b_w - w)
+    rate = (*(W * p - v), *(W * v + a - b_a + g), *(W * g), *sp.zeros(6, 1))
+    rest = {s: s for s in (*v, *g, *b_w, *b_a)} | {y3: 1 / p[2]}
+    state = (*p, *v, *g, *b_w, *b_a)
+    back = (y1 / y3, y2 / y3, 1 / y3, *state[3:])
+    usual = dict.fromkeys(g, 10.0) | dict.fromkeys(b_w, 0.01) | dict.fromkeys(b_a, 0.1)
+    image = {y1: p[0] / p[2], y2: p[1] / p[2]}
+    return StateView("camera with an IMU", state, rate, imu(), image, rest, back, (1,) * 9 + (0,) * 3 + (1,) * 3, usual)
