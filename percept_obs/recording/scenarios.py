@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from itertools import accumulate
+
 import numpy as np
 
 from percept_obs.recording import Scenario
+from percept_obs.recording.camera import Seed
+from percept_obs.recording.imu import Imu
+from percept_obs.recording.path import exponential
+from percept_obs.recording.state_scenario import StateScenario
+from percept_obs.system.bearings import bearings_only, own_ship
+from percept_obs.system.inertial import camera_with_imu
+from percept_obs.system.inertial import imu as imu_motion
 from percept_obs.system.motion import affine
 from percept_obs.system.surfaces import ImagingSurface, pinhole
 from percept_obs.validation import checked
 
-__all__ = ["drive", "ma2005_eq35", "ma2005_eq36", "planar"]
+__all__ = ["drive", "held_phone", "ma2005_eq35", "ma2005_eq36", "own_ship_turns", "planar"]
 
 _FIRST_ROWS = [[-0.2, 0.4, -0.6], [0.1, -0.2, 0.3]]
 _TRANSLATION = [0.5, 0.25, 0.3]
@@ -101,3 +110,62 @@ def planar() -> Scenario:
     """
     motion = affine([[0.0, 0.4, -0.6], [0.2, -0.2, 0.1], [0.4, -0.4, 0.2]], [1.6, -0.2, -0.4])
     return Scenario("planar motion", motion, (1.0, 1.25, 2.5), 40.0, pinhole(), "after Ma et al. 2005, Fig. 2")
+
+
+def own_ship_turns() -> StateScenario:
+    """Return a target whose bearing alone is seen from a ship that sails straight on for 10 s, and then turns for 4 s.
+
+    The target passes at some 600 m with a constant velocity; the ship turns with 8 m/s^2.
+
+    See Also
+    --------
+    held_phone : Another source of scale.
+
+    Examples
+    --------
+    >>> from percept_obs import record, scenarios
+    >>> record(scenarios.own_ship_turns(), 20).outputs[[0, -1], 0].round(2).tolist()
+    [0.46, -0.01]
+    """
+    turn = [[0, 0], [0, 0], [8, 0], [8, 0], [0, 0], [0, 0]]
+    motion = own_ship(turn, [0, 10, 10.5, 13.5, 14, 30])
+    return StateScenario("own ship turns", bearings_only(), motion, (300.0, 600.0, -4.0, 8.0), 29.0)
+
+
+@checked
+def held_phone(shake: float = 1.0, imu: Imu | None = None, seed: Seed = 0) -> StateScenario:
+    """Return a landmark 3 m ahead of a telephone that a hand shakes and turns for 12 s, with its IMU.
+
+    Parameters
+    ----------
+    shake : float
+        Amplitude of the accelerations in the world, in m/s^2; with 0 the telephone moves with constant speed.
+    imu : Imu, optional
+        Errors of the IMU; the usual ones when left out.
+    seed : int or numpy Generator
+        Of the IMU's errors.
+
+    See Also
+    --------
+    own_ship_turns : Another source of scale.
+
+    Examples
+    --------
+    >>> from percept_obs import record, scenarios
+    >>> recording = record(scenarios.held_phone(), 2)
+    >>> (1 / recording.truth[[0, -1], -1]).round(2).tolist()
+    [3.0, 2.73]
+    """
+    errors, duration = imu or Imu(), 12.0
+    times = np.arange(0, duration + 1, 0.005)
+    rates, phases = np.array([2.0, 3.0, 2.5]), np.array([0.0, 1.0, 2.0])
+    world = -shake * np.sin(np.outer(times, rates) + phases)
+    turning = np.array([0.3, 0.3, 0.2]) * np.sin(np.outer(times, [1.3, 1.7, 1.1]) + np.array([0.0, 1.0, 1.6]))
+    rotations = accumulate(exponential(-0.005 * np.cross(turning[:-1, None], np.eye(3))), np.matmul, initial=np.eye(3))
+    gravity = np.array([0.0, 9.81, 0.0])
+    felt = np.stack([rotation.T @ (each - gravity) for rotation, each in zip(rotations, world, strict=True)])
+    known = imu_motion(turning, felt, times)
+    measured, biases = errors.measured(known, duration, seed)
+    speed = shake * np.cos(phases) / rates + np.array([0.15, 0.05, 0.0])
+    state = (0.4, 0.2, 3.0, *speed, *gravity, *np.zeros(6))
+    return StateScenario("held phone", camera_with_imu(), known, state, duration, measured, biases)

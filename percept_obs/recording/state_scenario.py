@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.compile import Array, right_hand_side
+from percept_obs.compile import Array, Table, solve
 from percept_obs.compile.equations import Equations
+from percept_obs.compile.integrator import PLANT_STEP, instants, step_grid
 from percept_obs.recording.camera import Scene
-from percept_obs.recording.path import times_of, varying_path
+from percept_obs.recording.path import times_of
 from percept_obs.system.motion import Motion
 from percept_obs.system.state_view import StateView
 from percept_obs.validation import checked, set_fields
@@ -80,20 +80,17 @@ class StateScenario(Scene):
         """Motion as an observer knows it."""
         return self.measured or self.motion
 
-    @cached_property
-    def _flow(self) -> Callable[..., list[float]]:
-        return right_hand_side(Equations(self.seen.state, self.seen.rate, (), self.motion.parameters), {})
-
     def coordinates(self, times: ArrayLike) -> Array:
         """Return true coordinates at times from 0 on that do not decrease, shape (K, n)."""
-        times = times_of(times, len(self.state))
-        signal = self.motion.signal
-        breaks = () if signal is None else signal.breaks(times[-1])
-
-        def rate(time: float, state: Array) -> ArrayLike:
-            return self._flow(state, (), self.motion.known(time)[0])
-
-        states = varying_path(rate, np.array(self.state), times, breaks)
+        times, motion = times_of(times, len(self.state)), self.motion
+        breaks = np.asarray(() if motion.signal is None else motion.signal.breaks(times[-1]), dtype=float)
+        ends = np.union1d(times, [0.0, *breaks[(breaks > 0) & (breaks < times[-1])]])
+        grid, index = step_grid(ends, PLANT_STEP)
+        known = motion.known(0.0) if motion.constants is not None else motion.known(instants(grid))
+        table = Table(np.diff(grid), np.empty((len(grid) - 1, 1, 0)), known, np.empty((0, 0)))
+        equations = Equations(self.seen.state, self.seen.rate, (), motion.parameters)
+        path = solve(equations, self.state, table, (), "python").states
+        states = path[index[np.searchsorted(ends, times)]]
         if self.constants is not None:
             found = np.asarray(self.constants(times), dtype=float)
             states[:, -found.shape[1] :] = found

@@ -24,8 +24,9 @@ FOLDERS = {
     "tracking": "",
     "studies": "all_observers chatter comparison consistency diagnosis efficiencies fields least_squares likelihood "
     "sensitivity sweep trust tuning",
-    "system": "derivation",
-    "recording": "camera_files colmap poses pose_files scenarios stereo_mat track_files utias worked",
+    "system": "bearings derivation inertial state_view",
+    "recording": "camera_files colmap imu poses pose_files scenarios state_scenario stereo_mat track_files utias "
+    "worked",
     "checking": "",
     "exercises": "",
     "papers": "",

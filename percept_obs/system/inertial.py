@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 from percept_obs.system.motion import Motion, bound, cross
 from percept_obs.system.state_view import StateView
 
-w, a, p, v, g, b_w, b_a = (
-    sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w", "a", "p", "v", "g", "b_w", "b_a")
+w, a, p, v, g, b_w, b_a, u = (
+    sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True)) for name in ("w", "a", "p", "v", "g", "b_w", "b_a", "u")
 )
 y1, y2, y3 = sp.symbols("y1:4", real=True)
 
@@ -45,8 +45,9 @@ def camera_with_imu() -> StateView:
 
         p' = -(w - b_w) x p - v,  v' = -(w - b_w) x v + (a - b_a) + g,  g' = -(w - b_w) x g
 
-    (Hamel and Samson 2017 without biases.)  Measured are y1 = p1/p3 and y2 = p2/p3.  Without acceleration in the world
-    p and v scaled alike make the same pictures.
+    (Hamel and Samson 2017 without biases.)  Measured are y1 = p1/p3 and y2 = p2/p3; hidden are the velocity over the
+    depth u = v/p3, which the image shows without any scale, g, b_w, b_a and 1/p3.  Without acceleration in the world p
+    and v scaled alike make the same pictures.
 
     See Also
     --------
@@ -54,14 +55,14 @@ def camera_with_imu() -> StateView:
 
     Examples
     --------
-    >>> camera_with_imu().partition("y1", "y2").culprits
-    ('v1', 'v2', 'v3', 'y3')
+    >>> camera_with_imu().partition("y1", "y2").canonical_form().hidden[-1]
+    'y3'
     """
     W = cross(b_w - w)
     rate = (*(W * p - v), *(W * v + a - b_a + g), *(W * g), *sp.zeros(6, 1))
-    rest = {s: s for s in (*v, *g, *b_w, *b_a)} | {y3: 1 / p[2]}
+    rest = dict(zip(u, v / p[2], strict=True)) | {s: s for s in (*g, *b_w, *b_a)} | {y3: 1 / p[2]}
     state = (*p, *v, *g, *b_w, *b_a)
-    back = (y1 / y3, y2 / y3, 1 / y3, *state[3:])
-    usual = dict.fromkeys(g, 10.0) | dict.fromkeys(b_w, 0.01) | dict.fromkeys(b_a, 0.1)
+    back = (y1 / y3, y2 / y3, 1 / y3, *(u / y3), *state[6:])
+    usual = dict.fromkeys(g, 1.0) | dict.fromkeys(b_w, 0.01) | dict.fromkeys(b_a, 0.1) | {y3: 0.3}
     image = {y1: p[0] / p[2], y2: p[1] / p[2]}
     return StateView("camera with an IMU", state, rate, imu(), image, rest, back, (1,) * 9 + (0,) * 3 + (1,) * 3, usual)

@@ -60,7 +60,7 @@ class StateView(OnePoint):
     Examples
     --------
     >>> import sympy as sp
-    >>> from percept_obs import StateView, linear
+    >>> from percept_obs import linear
     >>> x, v, y, u, z = sp.symbols("x v y u z", real=True)
     >>> along = StateView("inverse of a place", (x, v), (v, 0), linear([[0, 1], [0, 0]], [0, 0]), {y: v / x},
     ...                   {z: 1 / x}, (1 / z, y / z), (1, 1))

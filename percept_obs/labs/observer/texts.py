@@ -160,7 +160,5 @@ def texts_for_the_page() -> Parts:
             yield f"forms/{key_of(surface, outputs)}", form_for_the_page(form_of(surface, outputs), BY_NAME)
     form = form_for_the_page(form_of("pinhole", SIZE), {name: BY_NAME[name] for name in OF_SIZE})
     others = BY_NAME.keys() - {*OF_SIZE}
-    refused = dict.fromkeys(
-        sorted(others), "with the size the page has the identifier-based observer and the EKF only"
-    )
+    refused = dict.fromkeys(sorted(others), "with the size the page has the identifier-based observer and the EKF only")
     yield f"forms/{key_of('pinhole', SIZE)}", {**form, "refused": refused}
