@@ -110,7 +110,7 @@ test_what_is_expected_is_said_in_words = refuses(
     lambda make, settings: make(**settings),
     (observer_lab, {"colour": "red"}, "there is no setting colour"),
     (observer_lab, {"hold": "second"}, "hold is 'second'; it must be one of zero, first, exact"),
-    (observer_lab, {"outputs": []}, "a list with at least one of y1, y2, each once"),
+    (observer_lab, {"outputs": []}, "a list with at least one of y1, y2, s, each once"),
     (observer_lab, {"A": [1, 2, 3]}, "A 1 is 1; it must be a list of 3, each a number from -1000 to 1000"),
     (observer_lab, {"normal": [0.0, 1.0, 0.0]}, "normal n3 is 0.0; it must be .* not 0; the plane must not hold the"),
     (observer_lab, {"surface": "sphere", "outputs": ["y1"]}, r"it must be one of \['y1', 'y2'\]"),

@@ -8,7 +8,7 @@ from utias_folder import utias_folder
 from percept_obs import Camera, Recording, Scenario, affine, ibo, record, scenarios, track
 from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.observer.settings import PICTURES
-from percept_obs.labs.observer.texts import BY_NAME, SURFACES, WAYS, form_of, key_of, system_of
+from percept_obs.labs.observer.texts import BY_NAME, SIZE, SURFACES, WAYS, form_of, key_of, system_of
 from percept_obs.recording.utias import load_utias
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import BehindCamera, pinhole
@@ -29,9 +29,11 @@ def test_the_model_is_complete_and_is_json(lab):
     assert model["opening"] == observer_lab("ma2005_eq35").settings
     assert model["pictures"] == list(PICTURES)
     choices = {name: system_of(name).output_choices for name in SURFACES}
-    assert list(model["forms"]) == KEYS == [key_of(name, outputs) for name in SURFACES for outputs in choices[name]]
+    assert [key_of(name, outputs) for name in SURFACES for outputs in choices[name]] == KEYS
+    assert list(model["forms"]) == [*KEYS, key_of("pinhole", SIZE)]
     for name in SURFACES:
-        assert model["surfaces"][name]["outputs"] == [list(outputs) for outputs in choices[name]]
+        sized = [SIZE] if name == "pinhole" else []
+        assert model["surfaces"][name]["outputs"] == [list(outputs) for outputs in (*choices[name], *sized)]
 
 
 @pytest.mark.parametrize("key", KEYS)
