@@ -8,27 +8,8 @@ import sympy as sp
 from examples import AFFINE, SURFACES
 from refusals import refuses
 
-from percept_obs import (
-    Camera,
-    Gaussian,
-    PerspectiveSystem,
-    PixelCamera,
-    Recording,
-    affine,
-    cramer_rao,
-    diagnose,
-    efficiency,
-    ekf,
-    ensemble,
-    how_observable,
-    instantaneous,
-    pinhole,
-    record,
-    scenarios,
-    seen_on,
-    sized,
-    track,
-)
+import percept_obs as po
+from percept_obs import Camera, PerspectiveSystem, affine, ekf, pinhole, record, scenarios, seen_on, sized, track
 from percept_obs.compile import vectorised
 from percept_obs.observers import OBSERVERS
 
@@ -36,10 +17,9 @@ SIZED = sized(pinhole(), radius=0.3)
 SYSTEM = PerspectiveSystem(affine(), SIZED)
 FORM = SYSTEM.measure("y1", "y2", "s")
 STRAIGHT = replace(scenarios.drive(), position=(1.76, -0.44, 11.0), surface=SIZED)
-NOISY = Camera(0.05, Gaussian(1e-3))
+NOISY = Camera(0.05, po.Gaussian(1e-3))
 START = [0.16, -0.04, 0.3 / 11, 1 / 6]
-s, y1, y2, y3, b1, b2, b3 = sp.symbols("s y1 y2 y3 b1 b2 b3", real=True)
-SPAN = {"rtol": 1e-6, "atol": 1e-6}
+s, y1, y2, b1, b2, b3 = sp.symbols("s y1 y2 b1 b2 b3", real=True)
 
 
 @pytest.mark.slow
@@ -47,40 +27,35 @@ SPAN = {"rtol": 1e-6, "atol": 1e-6}
 def test_the_size_grows_as_the_inverse_distance_on_every_surface_and_the_rest_is_as_without_it(surface):
     plain, system = (PerspectiveSystem(affine(), each) for each in (surface, sized(surface)))
     *image, size, inverse = system.rate
-    assert system.foe == plain.foe
-    assert system.parameters == plain.parameters
-    eta = surface.inverse_distance
-    point, draw = surface.project([0.3, 0.2, 2.0]), np.random.default_rng(1)
+    assert (system.foe, system.parameters) == (plain.foe, plain.parameters)
+    point = surface.project([0.3, 0.2, 2.0])
+    numbers = [*point[:-1], 0.1, point[-1], *np.random.default_rng(1).uniform(-1, 1, 12)]
+    growth = size / s - inverse / surface.inverse_distance
+    zeros = (growth, *(one - other for one, other in zip(image, plain.rate[:-1], strict=True)))
     names = (*system.coordinates, *affine().parameters)
-    numbers = [*point[:-1], 0.1, point[-1], *draw.uniform(-1, 1, 12)]
-    ratios = (size / s - inverse / eta, *(one - other for one, other in zip(image, plain.rate[:-1], strict=True)))
-    np.testing.assert_allclose(vectorised(names, ratios, surface.values)(*numbers), 0, atol=1e-12)
+    np.testing.assert_allclose(vectorised(names, zeros, surface.values)(*numbers), 0, atol=1e-12)
 
 
 def test_the_rate_is_that_of_the_moving_sphere():
     motion = affine([[0.1, -0.2, 0.3], [0.2, 0.1, -0.1], [-0.3, 0.1, 0.2]], [0.5, 0.25, -0.3])
-    scene = replace(STRAIGHT, motion=motion)
-    before, now, after = scene.coordinates([1 - 1e-5, 1, 1 + 1e-5])
-    names = (*scene.surface.coordinates, *SYSTEM.motion.parameters)
-    found = vectorised(names, SYSTEM.rate)(*now, *motion.known(0.0)[0])
-    np.testing.assert_allclose((after - before) / 2e-5, found, **SPAN)
+    before, now, after = replace(STRAIGHT, motion=motion).coordinates([1 - 1e-5, 1, 1 + 1e-5])
+    found = vectorised((*SYSTEM.coordinates, *affine().parameters), SYSTEM.rate)(*now, *motion.known(0.0)[0])
+    np.testing.assert_allclose((after - before) / 2e-5, found, rtol=1e-6, atol=1e-6)
 
 
 def test_its_row_of_w_stays_at_the_focus_of_expansion():
     assert sp.Matrix([b1 - b3 * y1, b2 - b3 * y2, -b3 * s]) == FORM.w.T
-    assert FORM.w.T.subs({y1: b1 / b3, y2: b2 / b3}) == sp.Matrix([0, 0, -b3 * s])
-    assert list(instantaneous(FORM).zero_set) == [{y1: b1 / b3, y2: b2 / b3, s: 0}]
+    assert list(po.instantaneous(FORM).zero_set) == [{y1: b1 / b3, y2: b2 / b3, s: 0}]
     assert {("y1", "s"), ("s",)} <= set(SYSTEM.output_choices)
     assert not FORM.rate.has(*SIZED.radii)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
-def test_every_observer_runs_on_it_and_stays_at_the_truth(make):
+@pytest.mark.parametrize("make", [make for make in OBSERVERS if not make.refusal(FORM)], ids=lambda make: make.key)
+def test_every_observer_of_a_canonical_form_runs_on_it_and_stays_at_the_truth(make):
     recording = record(replace(scenarios.drive(), surface=SIZED), camera=Camera(0.01))
     run = track(recording, make(FORM), start=recording.truth[0], hold="exact")
-    late = run.time > 1
-    assert np.nanmax(run.relative_error[late]) < 0.02
+    assert np.nanmax(run.relative_error[run.time > 1]) < 0.02
 
 
 @pytest.mark.slow
@@ -100,20 +75,14 @@ def test_straight_at_the_point_the_distance_is_found_to_the_bound_with_the_size_
     for form in (SYSTEM.measure("y1", "y2"), FORM):
         films = [record(STRAIGHT, 4, NOISY, seed) for seed in range(12)]
         runs = [track(film, ekf(form, noise_variance=1e-6, hidden_variance=0.01), START) for film in films]
-        bound = cramer_rao(films[0], form)
         errors[form.measured] = np.median([run.relative_error[-1] for run in runs])
-        ratio[form.measured] = efficiency(runs, bound).mean(2, 4)
+        ratio[form.measured] = po.efficiency(runs, po.cramer_rao(films[0], form)).mean(2, 4)
     assert errors[FORM.measured] < 0.03
     assert ratio[FORM.measured] == pytest.approx(1, abs=0.35)
     assert errors["y1", "y2"] > 0.3
-
-
-@pytest.mark.slow
-def test_every_measure_of_observability_says_so():
-    film = record(STRAIGHT, 2, NOISY)
-    assert "All measures agree: the state is observable" in str(how_observable(film, FORM))
-    blind = how_observable(record(replace(STRAIGHT, surface=pinhole()), 2, NOISY), AFFINE.measure("y1", "y2"))
-    assert "it is not observable" in str(blind)
+    blind = record(replace(STRAIGHT, surface=pinhole()), 2, NOISY)
+    assert "the state is observable" in str(po.how_observable(record(STRAIGHT, 2, NOISY), FORM))
+    assert "it is not observable" in str(po.how_observable(blind, AFFINE.measure("y1", "y2")))
 
 
 @pytest.mark.slow
@@ -121,13 +90,9 @@ def test_without_a_truth_the_samples_bear_the_distance_out_and_many_runs_move_th
     film = record(STRAIGHT, 4, NOISY, seed=1)
     run = track(replace(film, truth=None), ekf(FORM, noise_variance=1e-6))
     assert "the estimate agrees" in run.trust().sentence
-    found = ensemble(STRAIGHT, ekf(FORM), over={"X": [1.0, 2.0]}, seeds=2, camera=NOISY, duration=1.0)
-    assert (found["status"] == found["status"][0, 0]).all()
-
-
-def test_the_image_without_the_size_is_that_of_the_surface():
-    film = record(STRAIGHT, 1, NOISY)
-    np.testing.assert_allclose(seen_on(film, pinhole()).outputs, film.outputs[:, :2], atol=1e-12)
+    observer = ekf(FORM, noise_variance=1e-6)
+    found = po.ensemble(STRAIGHT, observer, over={"X": [1.0, 1.76]}, seeds=2, camera=NOISY, duration=2.0)
+    assert (found["final"] < 0.1).all()
 
 
 test_what_has_no_size_is_refused = refuses(
@@ -135,10 +100,6 @@ test_what_has_no_size_is_refused = refuses(
     (lambda: sized(pinhole()).project([1, 2, 3]), "no radius"),
     (lambda: sized(pinhole(), radius=-1.0), "radius is -1.0"),
     (lambda: sized(SIZED), "sees the size already"),
-    (lambda: diagnose(record(STRAIGHT, 1)), "no usual mistake is of one"),
+    (lambda: po.diagnose(record(STRAIGHT, 1)), "no usual mistake is of one"),
     (lambda: seen_on(record(scenarios.drive()), SIZED), "rays say nothing of the size"),
-    (
-        lambda: Recording.from_csv("a.csv", affine(), SIZED, camera=PixelCamera((500, 500), (320, 240))),
-        "pixels say nothing of the size",
-    ),
 )

@@ -5,7 +5,7 @@ import pytest
 from lab_settings import NOISY, as_array, copied_runs, run_in_node
 
 from percept_obs.labs.observer.lab import observer_lab
-from percept_obs.labs.observer.texts import OF_SIZE, RADIUS, SIZE
+from percept_obs.labs.observer.texts import OF_SIZE, SIZE
 from percept_obs.observability import windowed
 
 pytestmark = [pytest.mark.node, pytest.mark.slow]
@@ -29,7 +29,6 @@ def test_the_page_is_python(node, case):
     for name, run in lab.run().items():
         told = answer["runs"][name]
         np.testing.assert_allclose(as_array(answer["outputs"], 3), run.recording.outputs, rtol=1e-11, atol=1e-12)
-        np.testing.assert_allclose(run.recording.truth[:, 2], RADIUS * run.recording.truth[:, 3])
         np.testing.assert_allclose(as_array(told["estimate"], 3), run.estimate[:, SEEN], rtol=1e-10, atol=1e-9)
         np.testing.assert_allclose(copied[name].estimate, run.estimate, rtol=0, atol=1e-12)
         assert answer["summary"]["verdicts"][name] == run.verdict()
@@ -47,5 +46,3 @@ def test_what_the_page_has_not_of_the_size_is_said(node):
     assert answer["bound"] is None
     with pytest.raises(ValueError, match="with the size"):
         observer_lab(outputs=list(SIZE), observers=["sliding_mode"])
-    with pytest.raises(ValueError, match="on the sphere surface it must be one of"):
-        observer_lab(outputs=list(SIZE), surface="sphere")

@@ -63,9 +63,8 @@ class Sized(ImagingSurface):
 def sized(surface: ImagingSurface, radius: float | None = None) -> ImagingSurface:
     """Return a surface that also sees how large a sphere around the point is: s = r/Z on the pinhole.
 
-    Its rate is s' = s eta'/eta, from which r is gone; its row of w does not vanish at the focus of expansion.  A sphere
-    of radius rho is seen with s = rho/Z, a disc parallel to the image as well (Spica, Robuffo Giordano and Chaumette
-    2014).
+    Its rate is s' = s eta'/eta, from which r is gone; its row of w does not vanish at the focus of expansion (Spica,
+    Robuffo Giordano and Chaumette 2014).
 
     Parameters
     ----------
