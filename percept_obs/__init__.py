@@ -23,6 +23,7 @@ from percept_obs.observers import (
     identifier_based,
     integral_sliding_mode,
     ismo,
+    scheduled,
     sliding_mode,
     smo,
     with_point,
@@ -54,6 +55,7 @@ from percept_obs.system.surfaces import (
     unified,
 )
 from percept_obs.tracking.following import DoesNotFit, track
+from percept_obs.tracking.function import FunctionObserver
 from percept_obs.tracking.run import Run
 from percept_obs.validation import TooMuchWork, WrongKind
 
@@ -70,6 +72,7 @@ __all__ = [
     "DoesNotFit",
     "Efficiency",
     "FirstSight",
+    "FunctionObserver",
     "Gaussian",
     "ImagingSurface",
     "Motion",
@@ -121,6 +124,7 @@ __all__ = [
     "rigid",
     "rigid_from_poses",
     "scenarios",
+    "scheduled",
     "seen_on",
     "semigeneral",
     "sized",

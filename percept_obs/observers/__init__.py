@@ -20,6 +20,7 @@ from percept_obs.observers.gpebo import gpebo as gpebo
 from percept_obs.observers.gains import Gain as Gain
 from percept_obs.observers.immersion_and_invariance import NotIntegrable as NotIntegrable
 from percept_obs.observers.parts import NeedsMotion as NeedsMotion, noise_bias as noise_bias
+from percept_obs.observers.schedule import scheduled as scheduled
 from percept_obs.system.forms import NeedsMoreOutputs as NeedsMoreOutputs
 
 OBSERVERS = tuple(dict.fromkeys(value for value in list(globals().values()) if isinstance(value, Family)))

@@ -22,6 +22,7 @@ from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import slack_of
 from percept_obs.tracking.following import track
+from percept_obs.tracking.function import FunctionObserver
 from percept_obs.tracking.run import Run
 from percept_obs.validation import bar, checked
 
@@ -111,7 +112,7 @@ def all_observers(
     start: Mapping[str, float] | None = None,
     after: Sequence[float] = (1.0, 2.0, 3.0),
     references: Sequence[str] = ("truth",),
-    candidates: Mapping[Family, Sequence[Gains]] | None = None,
+    candidates: Mapping[Family | FunctionObserver, Sequence[Gains]] | None = None,
     max_tracks: int | None = None,
     **settings: Any,
 ) -> AllObservers:
@@ -221,7 +222,8 @@ def all_observers(
         distances = distances[np.isfinite(distances)]
         inverse = first.imaging_surface.inverse_distance.name
         start = {inverse: 1 / (2 * float(np.median(distances)))} if len(distances) else {}
-    tried = dict({make: make.candidates for make in OBSERVERS} if candidates is None else candidates)
+    tried: dict[Family | FunctionObserver, Sequence[Gains]] = {make: make.candidates for make in OBSERVERS}
+    tried = tried if candidates is None else dict(candidates)
     samples, others = (sum(len(each.time) for each in half) for half in (choosing, reporting))
     most = max([*map(len, tried.values()), len(STARTS) * MOST * blind])
     settings = {"language": choose(None, samples * most + others)} | settings
@@ -263,14 +265,14 @@ def _judge(
     choosing: Sequence[Recording],
     form: PartitionedSystem,
     follow: Follow,
-    tried: dict[Family, Sequence[Gains]],
+    tried: dict[Family | FunctionObserver, Sequence[Gains]],
     batch: Mapping[str, Estimate],
 ) -> tuple[str, Estimate, str]:
     """Label and function of the estimate that stands for a truth, and a sentence; filters in `tried` are tuned."""
     label, estimate, tuned = LEAST_SQUARES, batch.get(LEAST_SQUARES), ""
     for make, candidates in tried.items():
         observer = None if make.refusal(form) or not candidates else make(form, **candidates[0])
-        if observer is None or observer.covariance is None or not observer.equations.update:
+        if not isinstance(observer, Observer) or observer.covariance is None or not observer.equations.update:
             continue
         values = {gain.name: {each.get(gain.name, gain.value) for each in candidates} for gain in observer.gains}
         ranges = {

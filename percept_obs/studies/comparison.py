@@ -16,7 +16,7 @@ from percept_obs.compile import Array, choose
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.system.signal import from_the_start, slack_of
-from percept_obs.tracking.following import StepTooLong, track
+from percept_obs.tracking.following import AnyObserver, StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
 from percept_obs.validation import bar, checked
@@ -36,7 +36,7 @@ MEASURES = ("settling_time", "final", "rms", "worst", "cost")
 @checked
 def compare(
     recordings: Sequence[Recording],
-    observers: Mapping[str, Observer] | Sequence[Observer],
+    observers: Mapping[str, AnyObserver] | Sequence[AnyObserver],
     start: Mapping[str, float] | Sequence[float] | None = None,
     tolerance: float = TOLERANCE,
     after: float = 0.0,
@@ -274,7 +274,7 @@ def errors_of(
 @checked
 def best_setting(
     recordings: Sequence[Recording],
-    observers: Iterable[Observer],
+    observers: Iterable[AnyObserver],
     follow: Follow,
     after: Sequence[float] = (2.0,),
     reference: str = "truth",

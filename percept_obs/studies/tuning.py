@@ -19,6 +19,7 @@ from percept_obs.studies.comparison import Follow, best_setting, errors_of, time
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.following import DoesNotFit, StepTooLong, require_match
+from percept_obs.tracking.function import FunctionObserver
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
 from percept_obs.validation import bar, checked
@@ -50,7 +51,7 @@ def choose_and_report(
     reporting: Sequence[Recording],
     form: PartitionedSystem,
     follow: Follow,
-    candidates: Mapping[Family, Sequence[Gains]] | None = None,
+    candidates: Mapping[Family | FunctionObserver, Sequence[Gains]] | None = None,
     batch: Mapping[str, Estimate] | None = None,
     after: Sequence[float] = (1.0, 2.0, 3.0),
     references: Sequence[str] = ("truth",),

@@ -129,7 +129,8 @@ def track(
     if not math.isfinite(step):
         raise ValueError(f"the step is {step} s; it must be finite")
     length = float(recording.elapsed[-1])
-    states = len(observer.equations.state) if isinstance(observer, Observer) else int(observer.form.states)
+    form, own = observer.form, getattr(observer, "equations", None)
+    states = len(own.state) or len(form.coordinates) if own is not None else int(form.states)
     steps = max(length / step, len(recording.time))
     limit(
         steps * (states + 2 * recording.outputs[0].size),

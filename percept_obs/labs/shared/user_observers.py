@@ -17,6 +17,7 @@ from percept_obs.labs.shared.printed import Texts
 from percept_obs.observers import Observer
 from percept_obs.observers.family import Family
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.tracking.function import NOT_IN_THE_PAGE, FunctionObserver
 from percept_obs.validation.arguments import described
 
 
@@ -119,6 +120,8 @@ def read_observers(values: Sequence[Any], known: Mapping[str, Any]) -> tuple[lis
     users: dict[str, UserObserver] = {}
     name_of = {make: name for name, make in known.items()}
     for value in values:
+        if isinstance(value, FunctionObserver):
+            raise ValueError(NOT_IN_THE_PAGE.format(value.name))
         if isinstance(value, Observer):
             name = free_name(value.name, {*known, *users}, "my_observer")
             users[name] = UserObserver(name, lambda form, observer=value: observer, value.form)

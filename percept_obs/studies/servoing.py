@@ -1,0 +1,376 @@
+"""Image-based visual servoing of four points, with the true depth, a constant one, or that of an observer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike
+
+from percept_obs.compile import Array, Flags, vectorised
+from percept_obs.compile.integrator import LONGEST_STEP, STEP_ROUNDING, step
+from percept_obs.observability.steering import steering
+from percept_obs.observers.base import Observer
+from percept_obs.observers.extended_kalman import ekf
+from percept_obs.observers.parts import first_seen, hats
+from percept_obs.recording import Recording
+from percept_obs.system.motion import rigid
+from percept_obs.system.perspective import PerspectiveSystem
+from percept_obs.system.surfaces import pinhole
+from percept_obs.validation import bar, checked, positive
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SYSTEM = PerspectiveSystem(rigid(), pinhole())
+STEERING = steering(SYSTEM)
+FORM = STEERING.form
+VELOCITIES = (*SYSTEM.motion.parameters[3:6], *SYSTEM.motion.parameters[:3])
+"""Symbols of the commanded v_c and of w, the negative of the camera's angular velocity."""
+
+INTERACTION = SYSTEM.rate[:2, :].jacobian(VELOCITIES)
+"""Interaction matrix L of y' = L (v_c, w) for a point at rest, shape (2, 6), derived."""
+
+KNOWN = (*SYSTEM.coordinates, *SYSTEM.motion.parameters)
+GOAL = np.array([[x, y, 1.0] for x in (-0.2, 0.2) for y in (-0.2, 0.2)])
+"""Where the four points shall be in the camera's frame, in metres."""
+
+FIELD = 1.0
+"""Largest image coordinate that the camera sees: 45 degrees."""
+
+BELIEVED = (0.1, 10.0)
+"""Shares of the goal's inverse depth within which an observed one is believed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Servoing:
+    """Closed loops from S starts over K samples of p points.
+
+    Parameters
+    ----------
+    time : array of shape (K,)
+        Seconds.
+    coordinates : array of shape (S, K, p, 3)
+        True images and inverse depths, in 1/m.
+    samples : array of shape (S, K, p, 2)
+        Images as the camera sees them.
+    believed : array of shape (S, K, p)
+        Inverse depths that the controller believes, in 1/m.
+    velocity : array of shape (S, K, 6)
+        Commanded v_c in m/s and w in rad/s, w as in `rigid`; each is held until the next sample.
+    goal : array of shape (p, 3)
+        Coordinates at the goal.
+    lost : array of shape (S, K) of bool
+        True once a point has left the image or was behind the camera, which then stands still.
+    noise : float
+        Standard deviation of each sample.
+
+    See Also
+    --------
+    servo : Makes it.
+
+    Examples
+    --------
+    >>> from percept_obs.studies.servoing import servo
+    >>> run = servo([[0.1, 0.0, 0.5, 0.0, 0.0, 0.3]], "true", noise=0.0)
+    >>> run.arrived_at().round(1).tolist(), run.overshoot.round(3).tolist()
+    ([2.6], [0.0])
+    >>> run.recording().outputs.shape
+    (301, 2)
+    """
+
+    time: Array
+    coordinates: Array
+    samples: Array
+    believed: Array
+    velocity: Array
+    goal: Array
+    lost: Flags
+    noise: float
+
+    @cached_property
+    def image_error(self) -> Array:
+        """Difference y - y* of the true images, shape (S, K, 2 p)."""
+        return (self.coordinates - self.goal)[..., :2].reshape(*self.lost.shape, -1)
+
+    @property
+    def depth_error(self) -> Array:
+        """Relative error of the believed distance, shape (S, K, p)."""
+        return self.coordinates[..., 2] / self.believed - 1
+
+    def arrived_at(self, tolerance: float = 0.02) -> Array:
+        """Seconds from which on |y - y*| stays below the tolerance, shape (S,); infinite if it does not."""
+        away = (np.linalg.norm(self.image_error, axis=-1) >= tolerance) | self.lost
+        since = np.where(away.any(axis=1), away.shape[1] - np.argmax(away[:, ::-1], axis=1), 0)
+        return np.append(self.time, np.inf)[since]
+
+    @cached_property
+    def overshoot(self) -> Array:
+        """Largest share of the first image error by which the images pass the goal along it, shape (S,)."""
+        first = self.image_error[:, :1]
+        along = (self.image_error * first).sum(axis=-1) / (first**2).sum(axis=-1)
+        return np.maximum(0, -along.min(axis=1))
+
+    @cached_property
+    def excitation(self) -> Array:
+        """|w|^2 in m^2/s^2, which multiplies the inverse depth in the image's rate, shape (S, K, p); see `steering`."""
+        seen = np.moveaxis(self.coordinates, -1, 0)
+        return vectorised(KNOWN, [STEERING.excitation])(*seen, *_parameters(self.velocity))[0]
+
+    def recording(self, point: int = 0, start: int = 0) -> Recording:
+        """Samples of one point, with its true motion in samples, for `track` and labs."""
+        ends = np.stack([self.time[:-1], self.time[1:] - 1e-6], axis=-1).ravel()  # each velocity is held
+        held = np.repeat(self.velocity[start, :-1], 2, axis=0)
+        motion = rigid(held[:, 3:], held[:, :3], 0 * held[:, :3], np.append(ends[:-1], self.time[-1]))
+        seen, truth = self.samples[start, :, point], self.coordinates[start, :, point]
+        said = f"servoing, start {start}, point {point}"
+        return Recording(
+            self.time, seen, ("y1", "y2"), pinhole(), motion, truth, noise_variance=self.noise**2, source=said
+        )
+
+
+_interaction = vectorised(SYSTEM.coordinates, list(INTERACTION))
+_turning = vectorised(KNOWN, list(STEERING.turning))
+
+
+def _parameters(velocity: Array) -> Array:
+    """Parameters of the motion from velocities of shape (..., 6), shape (9, ..., 1) for all points alike."""
+    v, w = np.moveaxis(velocity[..., None, :], -1, 0).reshape(2, 3, *velocity.shape[:-1], 1)
+    return np.concatenate([w, v, 0 * v])
+
+
+def _points(poses: Array) -> Array:
+    """Points at the starts, shape (S, p, 3): turned about the square's centre, and shifted."""
+    from scipy.spatial.transform import Rotation
+
+    centre = GOAL.mean(axis=0)
+    turned = (GOAL - centre) @ Rotation.from_rotvec(poses[:, 3:]).as_matrix().swapaxes(1, 2)
+    return turned + centre + poses[:, None, :3]
+
+
+def _in_sight(points: Array) -> Flags:
+    """True where all points are in front of the camera and within its field, shape (S,)."""
+    return (np.abs(points[..., :2]).max(axis=-1) < FIELD * points[..., 2]).all(axis=-1)
+
+
+def _functions(observer: Observer, period: float) -> tuple[Any, Any, Any]:
+    """An observer's start, its way from sample to sample, and its inverse depth, for arrays of starts and points."""
+    form, eq, gains = observer.form, observer.equations, observer.gain_values
+    symbols, parts = (*eq.state, *form.x1, *form.parameters), math.ceil(period / LONGEST_STEP - STEP_ROUNDING)
+    begins = vectorised(
+        (*form.x1, *hats(form.coordinates), *first_seen(form.x1), *form.parameters), observer.start, gains
+    )
+    condition = sp.Piecewise((1, eq.reset_condition), (0, True))
+    flow, resets, condition, *updates = (
+        vectorised(symbols, block, gains) for block in (eq.flow, eq.reset, [condition], *eq.update)
+    )
+    inverse = vectorised(symbols, [observer.estimate[-1]], gains)
+
+    def begin(y: Array, start: Array, known: Array) -> Array:
+        seen = np.moveaxis(y, -1, 0)
+        return np.stack(begins(*seen, *seen, np.broadcast_to(start, seen[0].shape), 1.0, 1.0, *known))
+
+    def advance(state: Array, before: Array, y: Array, known: Array) -> Array:
+        held, seen = np.moveaxis(before, -1, 0), np.moveaxis(y, -1, 0)
+        with np.errstate(all="ignore"):
+            for _ in range(parts):
+                state = step(state, np.array(period / parts), lambda _, x: np.stack(flow(*x, *held, *known)))
+                if eq.reset:
+                    state = np.where(condition(*state, *held, *known)[0], resets(*state, *held, *known), state)
+            for update in updates:
+                state = np.stack(update(*state, *seen, *known))
+        return state
+
+    return begin, advance, lambda state, y, known: inverse(*state, *np.moveaxis(y, -1, 0), *known)[0]
+
+
+@checked
+def servo(
+    starts: ArrayLike,
+    depth: str | Observer,
+    ratio: float = 1.0,
+    gain: float = 1.0,
+    looking: float = 0.0,
+    noise: float = 1e-3,
+    duration: float = 10.0,
+    period: float = 1 / 30,
+    seed: int = 0,
+) -> Servoing:
+    """Close the loop (v_c, w) = -lambda L(y, 1/Z)^+ (y - y*) from several starts.
+
+    Parameters
+    ----------
+    starts : array of shape (S, 6)
+        Where the points' frame is at the start, seen from that of the goal: translation in metres, and rotation vector
+        about the square's centre in rad.
+    depth : "true", "constant", or Observer of images of both coordinates in rigid motion
+        Depth in L: the point's own; that of the goal; or that of one observer a point, which starts from the goal's,
+        and knows the commanded velocities.
+    ratio : float
+        Factor of the depth that is not observed: believed over true, or over that of the goal.
+    gain : float
+        lambda in 1/s.
+    looking : float
+        Speed in m/s for an image error of 1 that is added where `steering` turns the velocity to see more, summed over
+        the points; it vanishes with the error.
+    noise : float
+        Standard deviation of each image coordinate.
+    duration, period : float
+        Seconds; each command is held for a period.
+    seed : int
+
+    Raises
+    ------
+    ValueError
+        If the depth is none of these, starts have another shape, or a number makes no sense.
+
+    See Also
+    --------
+    starts : Draws some.
+    comparison : Compares depths.
+
+    Notes
+    -----
+    F. Chaumette and S. Hutchinson, Visual servo control, part I: basic approaches, IEEE RAM 13(4), 2006.
+
+    Examples
+    --------
+    >>> from percept_obs import ekf
+    >>> from percept_obs.studies.servoing import FORM, servo, starts
+    >>> run = servo(starts(2), ekf(FORM), duration=2.0)
+    >>> bool(abs(run.depth_error[:, 0]).min() > 0.1 > abs(run.depth_error[:, -1]).max())
+    True
+    """
+    from scipy.linalg import expm
+
+    poses = np.asarray(starts, dtype=float)
+    if poses.ndim != 2 or poses.shape[1] != 6 or not np.isfinite(poses).all():
+        raise ValueError(f"starts have shape {poses.shape}; give finite rows of a translation and a rotation, (S, 6)")
+    positive(ratio=ratio, gain=gain, duration=duration, period=period)
+    observed = depth if isinstance(depth, Observer) else None
+    if observed is None and depth not in ("true", "constant"):
+        raise ValueError(f"the depth {depth!r} is none of 'true', 'constant' and an Observer, such as ekf(FORM)")
+    if observed and (observed.form.x1, observed.form.parameters) != (FORM.x1, FORM.parameters):
+        raise ValueError(f"the {observed.name} observer is of another form; make it of servoing.FORM")
+    generator, surface, steps = np.random.default_rng(seed), SYSTEM.surface, round(duration / period) + 1
+    goal = surface.project(GOAL)
+    points = _points(poses)
+    rows: dict[str, list[Array]] = {name: [] for name in ("coordinates", "samples", "believed", "velocity", "lost")}
+    if not _in_sight(points).all():
+        raise ValueError(f"start {int(np.argmin(_in_sight(points)))} leaves a point out of sight; take another one")
+    u, y, lost, state = np.zeros((len(poses), 6)), goal[:, :2], np.zeros(len(poses), dtype=bool), np.empty(0)
+    begin, advance, estimated = _functions(observed or ekf(FORM), period)
+    for k in bar(range(steps), "servoing"):
+        x, before = surface.project(points), y
+        y = x[..., :2] + generator.normal(0, noise, x[..., :2].shape)
+        e = (y - goal[:, :2]).reshape(len(y), -1)
+        if observed:
+            state = advance(state, before, y, _parameters(u)) if k else begin(y, goal[:, 2], _parameters(u))
+            believed = np.clip(estimated(state, y, _parameters(u)), *(share * goal[:, 2] for share in BELIEVED))
+            believed = np.where(np.isfinite(believed), believed, goal[:, 2])
+        else:
+            believed = (x[..., 2] if depth == "true" else np.broadcast_to(goal[:, 2], y.shape[:2])) / ratio
+        seen = np.moveaxis(np.concatenate([y, believed[..., None]], axis=-1), -1, 0)
+        L = np.stack(_interaction(*seen), axis=-1).reshape(len(y), -1, 6)
+        u = -gain * (np.linalg.pinv(L) @ e[:, :, None])[..., 0]
+        if looking:
+            turn = np.stack(_turning(*seen, *_parameters(u))).sum(axis=-1).T
+            turn /= np.linalg.norm(turn, axis=1, keepdims=True)
+            u[:, :3] += looking * np.linalg.norm(e, axis=1, keepdims=True) * np.nan_to_num(turn)
+        u = np.where(lost[:, None], 0.0, u)
+        for name, value in zip(rows, (x, y, believed, u, lost), strict=True):
+            rows[name].append(value)
+        twist = np.zeros((len(u), 4, 4))
+        twist[:, :3, :3] = np.cross(u[:, None, 3:], np.eye(3)).swapaxes(1, 2)
+        twist[:, :3, 3] = -u[:, :3]
+        moved = expm(period * twist)
+        next_points = points @ moved[:, :3, :3].swapaxes(1, 2) + moved[:, None, :3, 3]
+        lost = lost | ~_in_sight(next_points)
+        points = np.where(lost[:, None, None], points, next_points)
+    found: dict[str, Any] = {name: np.stack(values, axis=1) for name, values in rows.items()}
+    return Servoing(np.linspace(0, (steps - 1) * period, steps), goal=goal, noise=noise, **found)
+
+
+@checked
+def starts(count: int, seed: int = 0) -> Array:
+    """Return poses for `servo` with all points in sight, shape (count, 6).
+
+    Up to 0.5 m to each side, up to 0.4 m nearer and 2 m farther than the goal, tilted by up to 0.4 rad and rolled by
+    up to 1 rad.
+
+    Parameters
+    ----------
+    count : int
+    seed : int
+
+    See Also
+    --------
+    servo : Begins there.
+
+    Examples
+    --------
+    >>> from percept_obs.studies.servoing import starts
+    >>> starts(3).shape
+    (3, 6)
+    """
+    generator, found = np.random.default_rng(seed), list[Array]()
+    high = np.array([0.5, 0.5, 2.0, 0.4, 0.4, 1.0])
+    while len(found) < count:
+        pose = generator.uniform([-0.5, -0.5, -0.4, -0.4, -0.4, -1.0], high)
+        found += [pose] if _in_sight(_points(pose[None]))[0] else []
+    return np.array(found)
+
+
+@checked
+def comparison(
+    depths: Mapping[str, str | Observer], poses: ArrayLike, tolerance: float = 0.02, **settings: Any
+) -> pd.DataFrame:
+    """Compare depths from the same starts, with 95 % intervals.
+
+    Parameters
+    ----------
+    depths : mapping of labels to depths, see `servo`
+    poses : array of shape (S, 6)
+    tolerance : float
+        See `Servoing.arrived_at`.
+    **settings
+        Passed to `servo`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row a label: arrived (share), arrived_low, arrived_high, lost (share), time (median in s of those that
+        arrive), time_low, time_high, overshoot (median), overshoot_low, overshoot_high.
+
+    See Also
+    --------
+    servo : One of them.
+
+    Examples
+    --------
+    >>> from percept_obs.studies.servoing import comparison, starts
+    >>> comparison({"true": "true"}, starts(5), duration=6.0)["arrived"].tolist()
+    [1.0]
+    """
+    import pandas as pd
+    from scipy.stats import binomtest, quantile_test
+
+    rows = {}
+    for label, depth in depths.items():
+        run = servo(poses, depth, **settings)
+        arrived = run.arrived_at(tolerance)
+        there = np.isfinite(arrived)
+        share = binomtest(int(there.sum()), len(there)).proportion_ci()
+        row = {"arrived": there.mean(), "arrived_low": share.low, "arrived_high": share.high}
+        row["lost"] = run.lost[:, -1].mean()
+        for name, values in (("time", arrived), ("overshoot", run.overshoot)):
+            between = quantile_test(values[there]).confidence_interval() if there.any() else (np.nan, np.nan)
+            row |= {name: np.median(values[there]) if there.any() else np.nan}
+            row |= dict(zip((f"{name}_low", f"{name}_high"), between, strict=True))
+        rows[label] = row
+    return pd.DataFrame.from_dict(rows, orient="index")
