@@ -22,6 +22,7 @@ from percept_obs.system import surfaces
 
 LARGE = 150
 """Operations beyond which sympy is not asked to factor."""
+UNREADABLE_ERRORS = ("range_identification", "integral_sliding_mode", "gpebo", "equivariant_filter")
 
 
 @dataclass(frozen=True)
@@ -68,8 +69,8 @@ def _observers():
             if family.objection(form) is None:
                 observer = family(form)
                 yield f"{family.key}, {outputs}", observer
-                # the errors of these are too long to read, or have no dynamics of their own
-                if form is not ONE and family.key not in ("range_identification", "integral_sliding_mode", "gpebo"):
+                # the errors of some are too long to read, or have no dynamics of their own
+                if form is not ONE and family.key not in UNREADABLE_ERRORS:
                     yield f"error of {family.key}, {outputs}", observer.error_dynamics()
 
 

@@ -34,6 +34,7 @@ from percept_obs.observers import (
     NotIntegrable,
     Observer,
     de_luca,
+    equivariant_filter,
     gpebo,
     immersion_and_invariance,
     integral_sliding_mode,
@@ -52,7 +53,7 @@ PAIRS = [
     for name, form in FORMS.items()
     if not make.refusal(form)
 ]
-WITHOUT_DYNAMICS = (integral_sliding_mode, gpebo)
+WITHOUT_DYNAMICS = (integral_sliding_mode, gpebo, equivariant_filter)
 """Their estimates are not linear in the state."""
 each_observer = pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 

@@ -17,6 +17,7 @@ from percept_obs.observers.range_identification import range_identification as r
 from percept_obs.observers.linear_approximation import lao as lao, linear_approximation as linear_approximation
 from percept_obs.observers.integral_sliding_mode import integral_sliding_mode as integral_sliding_mode, ismo as ismo
 from percept_obs.observers.gpebo import gpebo as gpebo
+from percept_obs.observers.equivariant import equivariant_filter as equivariant_filter
 from percept_obs.observers.gains import Gain as Gain
 from percept_obs.observers.immersion_and_invariance import NotIntegrable as NotIntegrable
 from percept_obs.observers.parts import NeedsMotion as NeedsMotion, noise_bias as noise_bias

@@ -4,10 +4,19 @@ import sympy as sp
 
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain, grid
-from percept_obs.observers.parts import NOISE_GAIN, NeedsMotion, hats, on_surface, sigma2
+from percept_obs.observers.parts import (
+    NOISE_GAIN,
+    NeedsMotion,
+    hats,
+    motion_on_surface,
+    on_surface,
+    sigma2,
+    symmetric,
+    upper,
+)
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.perspective import gradients_on
-from percept_obs.system.surfaces import POINT, ImagingSurface
+from percept_obs.system.surfaces import POINT
 
 gamma, forgetting, mu = sp.symbols("gamma l mu", real=True)
 
@@ -19,10 +28,10 @@ def no_equation(form: CanonicalForm) -> NeedsMotion | None:
     """Return an error if the form has no motion on a surface of two outputs, or hidden outputs enter B."""
     if (found := on_surface(form)) is not None:
         return found
-    assert isinstance(form.view, ImagingSurface)
-    image = form.view.image_coordinates
+    surface = motion_on_surface(form)[2]
+    image = surface.image_coordinates
     if len(image) != 2:
-        return NeedsMotion(f"the {form.view.name} has {len(image)} outputs; use one with 2")
+        return NeedsMotion(f"the {surface.name} has {len(image)} outputs; use one with 2")
     if unknown := _annihilator(form).free_symbols & {*image} - {*form.x1}:
         names = ", ".join(sorted(map(str, unknown)))
         return NeedsMotion(f"{names} must be measured as well, for the equation of the point on its ray needs it here")
@@ -78,12 +87,10 @@ def gpebo(form: CanonicalForm) -> Derived:
     >>> print(f"{track(record(scenarios.ma2005_eq35(), 5), observer).settling_time(0.1):.1f} s")
     2.9 s
     """
-    assert form.motion is not None  # see no_equation
-    assert isinstance(form.view, ImagingSurface)
-    A, b, surface = form.motion.A, form.motion.b, form.view
+    A, b, surface = motion_on_surface(form)
     Phi = sp.ImmutableMatrix(3, 3, sp.symbols("Phi1:4(1:4)", real=True))
     xi, Y, theta = (sp.ImmutableMatrix(sp.symbols(names, real=True)) for names in ("xi1:4", "Y1:4", "q1:3 rho"))
-    Q = sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"Q{min(i, j) + 1}{max(i, j) + 1}", real=True))
+    Q = symmetric("Q")
     both = _annihilator(form) * Phi[:, :2].row_join(xi).row_join(-Phi[:, 2])  # (phi, r) |Phi|
     square = both.T * both - sigma2 * sum((both.diff(y).T * both.diff(y) for y in form.x1), sp.zeros(4))
     square /= sum(entry**2 for entry in Phi)
@@ -91,7 +98,7 @@ def gpebo(form: CanonicalForm) -> Derived:
     constants = gamma * D / (mu + D**2) * (Q.adjugate() * Y - D * theta)
 
     def state(Phi: sp.Matrix, xi: sp.Matrix, Q: sp.Matrix, Y: sp.Matrix, theta: sp.Matrix) -> tuple[sp.Expr, ...]:
-        return (*Phi, *xi, *(Q[i, j] for i in range(3) for j in range(i, 3)), *Y, *theta)
+        return (*Phi, *xi, *upper(Q), *Y, *theta)
 
     flow = state(A * Phi, A * xi + b, square[:3, :3] - forgetting * Q, square[:3, 3] - forgetting * Y, constants)
     ray, zero = sp.ImmutableMatrix(surface.ray), sp.zeros(3)
@@ -107,5 +114,5 @@ def gpebo(form: CanonicalForm) -> Derived:
 
 def _annihilator(form: CanonicalForm) -> sp.ImmutableMatrix:
     """Gradients of the measured outputs on the ray, shape (n1, 3), which are orthogonal to it."""
-    assert isinstance(form.view, ImagingSurface)
-    return gradients_on(form.view).extract([form.view.image_coordinates.index(y) for y in form.x1], [0, 1, 2])
+    surface = motion_on_surface(form)[2]
+    return gradients_on(surface).extract([surface.image_coordinates.index(y) for y in form.x1], [0, 1, 2])

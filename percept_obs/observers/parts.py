@@ -39,6 +39,23 @@ def on_surface(form: PartitionedSystem) -> NeedsMotion | None:
     return None
 
 
+def motion_on_surface(form: PartitionedSystem) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix, ImagingSurface]:
+    """Return A, b and the surface of a form to which `on_surface` has no objection."""
+    assert form.motion is not None
+    assert isinstance(form.view, ImagingSurface)
+    return form.motion.A, form.motion.b, form.view
+
+
+def symmetric(letter: str) -> sp.ImmutableMatrix:
+    """Return a symmetric matrix of symbols, shape (3, 3), such as Q11, Q12, ..."""
+    return sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"{letter}{min(i, j) + 1}{max(i, j) + 1}", real=True))
+
+
+def upper(matrix: sp.ImmutableMatrix) -> Expressions:
+    """Return the entries of a symmetric matrix on its diagonal and above, row by row."""
+    return tuple(matrix[i, j] for i in range(matrix.rows) for j in range(i, matrix.cols))
+
+
 def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
     """Return symbols of the estimates: yhat1 for y1.
 

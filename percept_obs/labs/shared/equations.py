@@ -8,7 +8,7 @@ from typing import Any
 import sympy as sp
 
 from percept_obs.labs.shared.markup import after, dotted, formula, markup, row, words
-from percept_obs.observers import Observer, extended_kalman, linear_approximation
+from percept_obs.observers import Observer, equivariant_filter, extended_kalman, gpebo, linear_approximation
 from percept_obs.observers.inversion import elapsed
 from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm
@@ -26,7 +26,7 @@ def equations_of(make: Callable[..., Observer], **switch: str) -> list[dict[str,
     They are to be tried in their order; the last ones are without zeros.
     """
     if make in IN_MATRICES:
-        observer = make(PerspectiveSystem(affine(), pinhole()).measure("y1"))
+        observer = make(PerspectiveSystem(affine(), pinhole()).measure("y1", "y2"))
         lines = partial(IN_MATRICES[make], {gain.name: gain.symbol for gain in observer.gains})
         return _without_zeros(observer, lines)
     return equations_in_scalars(make(abstract_form(), **switch))
@@ -163,9 +163,67 @@ def _cascade_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] =
     ]
 
 
+def constants_equations(Phi: Any, xi: Any, A: Any, b: Any, phi: Any, r: Any, Q: Any, Y: Any, lost: Any) -> Matrices:
+    """The observer of constants, without bias of noise: what is known of the motion, and of the constants."""
+    return {"Phi'": A * Phi, "xi'": A * xi + b, "Q'": phi.T * phi - lost * Q, "Y'": phi.T * r - lost * Y}
+
+
+def turning_equations(G: Any, S: Any, F: Any, u: Any, h: Any, k: Any, half: Any, Q: Any, R: Any) -> Matrices:
+    """The equivariant filter, for an output with the slope h: flow, variance s of the innovation, gain k, update."""
+    s = sp.MatrixSymbol("s", 1, 1)
+    return {
+        "G'": G * u,
+        "S'": F * S + S * F.T + Q,
+        "s": h * S * h.T + R,
+        "k": S * h.T * s**-1,
+        "G+": G * half**2,
+        "S+": S - k * h * S,
+    }
+
+
+def _constants_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = ()) -> list[str]:
+    n = sp.Symbol("n", integer=True, positive=True)
+    Phi, A, Q, adj = (sp.MatrixSymbol(name, 3, 3) for name in ("Phi", "A", "Q", "Q^*"))
+    xi, b, Y, theta = (sp.MatrixSymbol(name, 3, 1) for name in ("xi", "b", "Y", "thetahat"))
+    phi, r, D = sp.MatrixSymbol("phi", n, 3), sp.MatrixSymbol("r", n, 1), sp.Symbol("D")
+    rows = constants_equations(Phi, xi, A, b, phi, r, Q, Y, letters["forgetting"])
+    if (variance := letters["noise_variance"]) not in zero:
+        rows["Q'"] -= variance * sp.MatrixSymbol("N", 3, 3)
+        rows["Y'"] -= variance * sp.MatrixSymbol("n", 3, 1)
+    share, rho = letters["gain"] * D / (letters["caution"] + D**2), sp.Symbol("rho")
+    point, constants = sp.Matrix(sp.symbols("q1 q2 1")), sp.Matrix(sp.symbols("q1 q2 rho"))
+    return [
+        row(formula(dotted(Phi), rows["Phi'"]), ",", formula(dotted(xi), rows["xi'"])),
+        row("the point", formula("<mi>X</mi>", Phi * point / rho + xi), "with", formula(sp.Symbol("theta"), constants)),
+        row("the ray's normals B give", formula(phi * sp.MatrixSymbol("theta", 3, 1), r)),
+        row(formula(dotted(Q), rows["Q'"], letters), ",", formula(dotted(Y), rows["Y'"], letters)),
+        row(formula(dotted(theta), share * (adj * Y - D * theta), letters)),
+    ]
+
+
+def _turning_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = ()) -> list[str]:
+    G, S, F, u, C, A, one = (sp.MatrixSymbol(name, 3, 3) for name in ("G", "S", "F", "U", "C", "A", "I"))
+    h, k, R = sp.MatrixSymbol("h", 1, 3), sp.MatrixSymbol("k", 3, 1), letters["noise_variance"]
+    Q = sp.ZeroMatrix(3, 3) if letters["process_noise"] in zero else letters["process_noise"] * one
+    rows = turning_equations(G, S, F, u, h, k, one + C / 2, Q, sp.MatrixSymbol(R.name, 1, 1))
+    return [
+        row(formula(dotted(G), rows["G'"]), ",", formula(dotted(S), rows["S'"], letters)),
+        row(formula(F, G**-1 * A * G - u), ", U moves the estimate, G's last column, as the motion does"),
+        row(formula("<mi>s</mi>", rows["s"], letters), ",", formula("<mi>k</mi>", rows["k"])),
+        row("at a sample of an output", formula(after(G), rows["G+"]), ",", formula(after(S), rows["S+"])),
+        row("C turns and scales by k times the innovation"),
+        row(
+            "at the start", formula(S, sp.diag(*[letters["measured_variance"]] * 2, letters["range_variance"]), letters)
+        ),
+        row("and an inverse distance of at least", markup(letters["least_inverse"], letters)),
+    ]
+
+
 X2 = sp.Symbol("x2")
 _OFFSET = formula(sp.Symbol("f_0"), sp.Matrix([sp.Symbol("phi"), sp.Function("g")(0)]))
 IN_MATRICES: Mapping[Callable[..., Observer], Callable[..., list[str]]] = {
     extended_kalman: _kalman_lines,
     linear_approximation: _cascade_lines,
+    gpebo: _constants_lines,
+    equivariant_filter: _turning_lines,
 }
