@@ -33,9 +33,11 @@ class NeedsMotion(ValueError):
 
 
 def on_surface(form: PartitionedSystem) -> NeedsMotion | None:
-    """Return an error if the form does not know a motion seen on an imaging surface."""
+    """Return an error if the form knows no motion seen on an imaging surface, or a size is seen on it."""
     if form.motion is None or not isinstance(form.view, ImagingSurface):
         return NeedsMotion("this form does not know its motion and surface; make it by PerspectiveSystem.measure")
+    if form.view.radii:
+        return NeedsMotion("a size of an unknown radius gives no equation of the point; use a surface without it")
     return None
 
 
