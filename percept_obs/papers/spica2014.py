@@ -76,7 +76,7 @@ ENTRIES = (
     at("w", "", "", "what the inverse depth is multiplied by in the rates of y1, y2 and s")(
         reads("w1 = b1 - b3 y1; w2 = b2 - b3 y2; w3 = -b3 s"), identities(derived)
     ),
-    at("focus of expansion", "", "", "where the image says nothing of the distance, the size does")(
+    at("at the FOE", "", "", "at the focus of expansion, where the image says nothing of the distance, the size does")(
         reads("w1 = 0; w2 = 0; w3 = -b3 s"), at_the_focus, "while b3 is not 0"
     ),
     at("scaled centre", "", "", "the sphere's centre over its radius is seen as a whole")(
