@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 from percept_obs.system.motion import Motion, bound, cross
 from percept_obs.system.state_view import StateView
 
-w, a, p, v, g, b_w, b_a, u = (
-    sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True)) for name in ("w", "a", "p", "v", "g", "b_w", "b_a", "u")
+w, a, p, v, g, b_w, b_a, u, q, c = (
+    sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True))
+    for name in ("w", "a", "p", "v", "g", "b_w", "b_a", "u", "q", "c")
 )
 y1, y2, y3 = sp.symbols("y1:4", real=True)
 
@@ -45,9 +46,9 @@ def camera_with_imu() -> StateView:
 
         p' = -(w - b_w) x p - v,  v' = -(w - b_w) x v + (a - b_a) + g,  g' = -(w - b_w) x g
 
-    (Hamel and Samson 2017 without biases.)  Measured are y1 = p1/p3 and y2 = p2/p3; hidden are the velocity over the
-    depth u = v/p3, which the image shows without any scale, g, b_w, b_a and 1/p3.  Without acceleration in the world p
-    and v scaled alike make the same pictures.
+    (Hamel and Samson 2017 without biases.)  Measured are y1 = p1/p3 and y2 = p2/p3; hidden are u = v/p3, q = g/p3,
+    c = b_a/p3, b_w and y3 = 1/p3: over the depth, so that u' has a y3 + q - c, linear in what has a scale.  Without
+    acceleration in the world y3, q and c scaled alike make the same pictures.
 
     See Also
     --------
@@ -60,9 +61,10 @@ def camera_with_imu() -> StateView:
     """
     W = cross(b_w - w)
     rate = (*(W * p - v), *(W * v + a - b_a + g), *(W * g), *sp.zeros(6, 1))
-    rest = dict(zip(u, v / p[2], strict=True)) | {s: s for s in (*g, *b_w, *b_a)} | {y3: 1 / p[2]}
-    state = (*p, *v, *g, *b_w, *b_a)
-    back = (y1 / y3, y2 / y3, 1 / y3, *(u / y3), *state[6:])
-    usual = dict.fromkeys(g, 1.0) | dict.fromkeys(b_w, 0.01) | dict.fromkeys(b_a, 0.1) | {y3: 0.3}
+    state, shares = (*p, *v, *g, *b_w, *b_a), ((u, v), (q, g), (c, b_a))
+    over_depth = {s: e / p[2] for share, vector in shares for s, e in zip(share, vector, strict=True)}
+    rest = over_depth | {s: s for s in b_w} | {y3: 1 / p[2]}
+    back = (y1 / y3, y2 / y3, 1 / y3, *(u / y3), *(q / y3), *b_w, *(c / y3))
+    usual = dict.fromkeys(q, 3.0) | dict.fromkeys(b_w, 0.01) | dict.fromkeys(c, 0.03) | {y3: 0.3}
     image = {y1: p[0] / p[2], y2: p[1] / p[2]}
     return StateView("camera with an IMU", state, rate, imu(), image, rest, back, (1,) * 9 + (0,) * 3 + (1,) * 3, usual)
