@@ -592,6 +592,7 @@ LABELS = {
     "runs_over_time": ["time (s)", "$y_{3} = 1/Z$ (1/m)", "|error of $y_{3}$|"],
     "causes": ["wrong by so many times the usual size of the mistake"],
     "scene": ["$Z$ (m)", "$X$ (m)"],
+    "servoing": ["time (s)", "$|y - y^{*}|$", "|error of the depth|", "$|w|^2$ (m$^2$/s$^2$)"],
     "settings_map": ["noise", "gain"],
     "signals": ["time (s)", "$y_{1}$", "$y_{2}$", "$y_{3} = 1/Z$ (1/m)", "|error|"],
     "trust": ["time (s)", "depth $Z$ (m)"],

@@ -18,6 +18,7 @@ from sample_sizes import sampled
 from percept_obs import papers
 from percept_obs.checking.slips import slips, symbols_in
 from percept_obs.papers import (
+    CHAUMETTE2006,
     CHWA2019,
     DE_LUCA2008,
     INABA2005,
@@ -56,6 +57,7 @@ PAPERS = {
     "Chwa": Known(CHWA2019, 37, 1000),
     "De Luca": Known(DE_LUCA2008, 0, 350),
     "Spica": Known(SPICA2014, 0, 100),
+    "Chaumette": Known(CHAUMETTE2006, 0, 30),
 }
 FEW = 2
 """Slips of each formula that the quick tests try."""
@@ -64,7 +66,7 @@ each_paper = pytest.mark.parametrize("known", PAPERS.values(), ids=PAPERS)
 
 def runs_observers(entry):
     """Return True if an entry is judged by a simulation: its check's module tracks or uses runs."""
-    return not vars(sys.modules[entry.check.__module__]).keys().isdisjoint({"track", "followed"})
+    return not vars(sys.modules[entry.check.__module__]).keys().isdisjoint({"track", "followed", "servo"})
 
 
 EVERY = 8

@@ -6,7 +6,16 @@ from percept_obs.figures.observability import bound_map, consistency, excitation
 from percept_obs.figures.runs import distance, runs_over_time, signals
 from percept_obs.figures.scene import scene, velocities
 from percept_obs.figures.structure import cases, depth_errors, error_norm, quantities
-from percept_obs.figures.studies import causes, chatter, comparison, efficiencies, entries, settings_map, trust
+from percept_obs.figures.studies import (
+    causes,
+    chatter,
+    comparison,
+    efficiencies,
+    entries,
+    servoing,
+    settings_map,
+    trust,
+)
 
 __all__ = [
     "Figure",
@@ -29,6 +38,7 @@ __all__ = [
     "quantities",
     "runs_over_time",
     "scene",
+    "servoing",
     "settings_map",
     "signals",
     "trust",

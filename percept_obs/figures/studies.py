@@ -17,6 +17,7 @@ from percept_obs.studies.comparison import summary
 from percept_obs.studies.diagnosis import Diagnosis
 from percept_obs.studies.diagnosis.causes import CAUSES
 from percept_obs.studies.sensitivity import SHARE, Sensitivity
+from percept_obs.studies.servoing import Servoing
 from percept_obs.studies.trust import TrustOverTime
 from percept_obs.validation import Kind
 
@@ -167,6 +168,46 @@ def efficiencies(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Dra
         yield f"{case}: {', '.join(said) or 'nobody settles'}" + (f"; not settled: {', '.join(rest)}." if rest else ".")
     handles = [Line2D([], [], label=name, **each) for name, each in looks.items()]
     base.whole(panels[0]).legend(handles=handles, loc="outside upper center", ncols=3, frameon=False)
+    return panels
+
+
+@figure("there are no loops, or there are not three axes")
+def servoing(loops: Mapping[str, Servoing], axes: Sequence[Axes] | None = None) -> Drawing:
+    """Image error, error of the believed depth, and excitation of closed loops: medians over starts and points.
+
+    Parameters
+    ----------
+    loops : mapping of labels to Servoing
+        From `percept_obs.studies.servoing.servo`.
+
+    Examples
+    --------
+    >>> from percept_obs import figures
+    >>> from percept_obs.studies.servoing import servo, starts
+    >>> loops = {depth: servo(starts(3), depth, duration=2.0) for depth in ("true", "constant")}
+    >>> print(figures.servoing(loops).text.split(". ")[0])
+    Image error, error of the believed depth and excitation of 2 closed loops over 2 s, on logarithmic axes
+    """
+    if not loops:
+        raise ValueError("there are no loops to draw; servo(starts(20), 'true') makes one")
+    panels = base.rows(axes, (1.6, 1.6, 1.6), ["image error", "error of the depth", "excitation"])
+    names = (r"$|y - y^{*}|$", "|error of the depth|", r"$|w|^2$ (m$^2$/s$^2$)")
+    time = next(iter(loops.values())).time
+    yield (
+        f"Image error, error of the believed depth and excitation of {len(loops)} closed loops over {time[-1]:.3g} s, "
+        "on logarithmic axes."
+    )
+    for k, (label, run) in enumerate(loops.items()):
+        size = np.median(np.linalg.norm(run.image_error, axis=-1), axis=0)
+        shown = (size, *(np.median(np.abs(each), axis=(0, 2)) for each in (run.depth_error, run.excitation)))
+        for ax, values in zip(panels, shown, strict=True):
+            ax.plot(run.time, np.maximum(values, 1e-6), label=label, markevery=len(time) // 8 + 1, **look.style(k))
+        said = ", ".join(f"{values[0]:.2g} to {values[-1]:.2g}" for values in shown)
+        yield f"{label}, from the start to the end: {said}."
+    for ax, name in zip(panels, names, strict=True):
+        ax.set(yscale="log", ylabel=name)
+    panels[-1].set_xlabel("time (s)")
+    legend_above(panels[0])
     return panels
 
 
