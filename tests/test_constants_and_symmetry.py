@@ -35,6 +35,7 @@ def test_a_start_at_infinity_needs_no_guard_and_no_other_time(form):
     assert far < 5
 
 
+@pytest.mark.slow
 def test_a_range_stays_positive_whatever_is_seen():
     filtered = track(
         record(scenarios.ma2005_eq35(), 2, Camera(0.05, Uniform(0.3))), equivariant_filter(BOTH), {"y3": 5}

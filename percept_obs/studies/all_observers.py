@@ -274,6 +274,8 @@ def _judge(
         observer = None if make.refusal(form) or not candidates else make(form, **candidates[0])
         if not isinstance(observer, Observer) or observer.covariance is None or not observer.equations.update:
             continue
+        if label != LEAST_SQUARES:  # the first filter judges
+            break
         values = {gain.name: {each.get(gain.name, gain.value) for each in candidates} for gain in observer.gains}
         ranges = {
             gain.name: (0.01 * gain.low or SMALLEST * gain.high, gain.high)
