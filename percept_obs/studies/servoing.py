@@ -224,6 +224,10 @@ def servo(
         Seconds; each command is held for a period.
     seed : int
 
+    Returns
+    -------
+    Servoing
+
     Raises
     ------
     ValueError

@@ -173,6 +173,10 @@ def transition(form: PartitionedSystem) -> Callable[[Array, float, Mapping[str, 
     It moves coordinates of shape (..., n), many particles or sigma points at once, by one step of the package's
     Runge-Kutta method with the motion held.
 
+    Parameters
+    ----------
+    form : PartitionedSystem
+
     See Also
     --------
     FunctionObserver : Has such a step.
