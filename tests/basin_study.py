@@ -19,12 +19,13 @@ WRONG = (0.1, 0.3, 1.0, 3.0, 10.0)
 def study(seeds, wrong=WRONG):
     """Rows of wrong range, observer: share that settles, median settling time, median and mean NEES."""
     films = [record(scenarios.ma2005_eq35(), 10, NOISY, seed) for seed in range(seeds)]
+    observers = {make.key: make(BOTH) for make in (equivariant_filter, ekf)}
     for factor in wrong:
-        for make in (equivariant_filter, ekf):
-            runs = [track(each, make(BOTH), {"y3": each.truth[0, 2] / factor}) for each in films]
+        for key, observer in observers.items():
+            runs = [track(each, observer, {"y3": each.truth[0, 2] / factor}) for each in films]
             times = np.array([run.settling_time(0.1) for run in runs])
             squared = np.array([run.nees("y3")[100:] for run in runs])
-            yield factor, make.key, np.isfinite(times).mean(), np.median(times), np.median(squared), squared.mean()
+            yield factor, key, np.isfinite(times).mean(), np.median(times), np.median(squared), squared.mean()
 
 
 if __name__ == "__main__":
