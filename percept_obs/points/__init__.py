@@ -2,6 +2,7 @@
 
 from percept_obs.points.block import NotLinear, point_block
 from percept_obs.points.bodies import body_with_origin, independent_points, rigid_body
+from percept_obs.points.camera_imu import camera_imu, trusting
 from percept_obs.points.form import PointsForm, UnseenDirection
 from percept_obs.points.luenberger import LuenbergerObserver, luenberger
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix, constant, lyapunov, riccati, scheduled
@@ -20,6 +21,7 @@ __all__ = [
     "PointsScenario",
     "UnseenDirection",
     "body_with_origin",
+    "camera_imu",
     "constant",
     "independent_points",
     "luenberger",
@@ -28,4 +30,5 @@ __all__ = [
     "riccati",
     "rigid_body",
     "scheduled",
+    "trusting",
 ]

@@ -52,10 +52,10 @@ def independent_points(motion: Motion, points: int, surface: ImagingSurface | No
     _check_count(points)
     if motion.A.shape != (3, 3):
         raise ValueError(f"the motion has {motion.A.shape[0]} states; that of a single point has 3")
-    A = _placed(points, {(k, k): motion.A for k in range(points)})
-    b = _placed(points, {(k, 0): motion.b for k in range(points)}, columns=1)
+    A = placed(points, {(k, k): motion.A for k in range(points)})
+    b = placed(points, {(k, 0): motion.b for k in range(points)}, columns=1)
     many = replace(motion, name=f"{motion.name}, {points} points", A=A, b=b)
-    return _form(many, [f"X{k + 1}" for k in range(points)], [[k] for k in range(points)], surface)
+    return form_of(many, [f"X{k + 1}" for k in range(points)], [[k] for k in range(points)], surface)
 
 
 @checked
@@ -113,7 +113,7 @@ functions of time, optional
     velocities = (camera_angular_velocity, camera_velocity, body_angular_velocity, point_velocity)
     motion = _body_motion("rigid body", points, velocities, times)
     others = range(1, points)
-    return _form(motion, ["r", *(f"d{k + 1}" for k in others)], [[0], *([0, k] for k in others)], surface)
+    return form_of(motion, ["r", *(f"d{k + 1}" for k in others)], [[0], *([0, k] for k in others)], surface)
 
 
 @checked
@@ -158,7 +158,7 @@ def body_with_origin(
     velocities = (camera_angular_velocity, camera_velocity, body_angular_velocity, origin_velocity)
     motion = _body_motion("rigid body with an origin", points + 1, velocities, times)
     others = range(1, points + 1)
-    return _form(motion, ["o", *(f"d{k}" for k in others)], [[0, k] for k in others], surface)
+    return form_of(motion, ["o", *(f"d{k}" for k in others)], [[0, k] for k in others], surface)
 
 
 def _body_motion(name: str, vectors: int, velocities: tuple[Any, ...], times: ArrayLike | None) -> Motion:
@@ -168,12 +168,12 @@ def _body_motion(name: str, vectors: int, velocities: tuple[Any, ...], times: Ar
     if any(value is not None for value in velocities):
         velocities = tuple(np.zeros(3) if value is None else value for value in velocities)
     place, turning = cross(-w_c), cross(w_b - w_c)
-    A = _placed(vectors, {(0, 0): place, **{(k, k): turning for k in range(1, vectors)}})
-    v = _placed(vectors, {(0, 0): v_p - v_c}, columns=1)
+    A = placed(vectors, {(0, 0): place, **{(k, k): turning for k in range(1, vectors)}})
+    v = placed(vectors, {(0, 0): v_p - v_c}, columns=1)
     return bound(name, A, v, list(zip(velocities, symbols, strict=True)), times)
 
 
-def _placed(vectors: int, blocks: dict[tuple[int, int], sp.ImmutableMatrix], columns: int = 0) -> sp.ImmutableMatrix:
+def placed(vectors: int, blocks: dict[tuple[int, int], sp.ImmutableMatrix], columns: int = 0) -> sp.ImmutableMatrix:
     """Sparse matrix with blocks of three rows at given positions."""
     entries = {
         (3 * row + i, 3 * column + j): block[i, j]
@@ -185,7 +185,7 @@ def _placed(vectors: int, blocks: dict[tuple[int, int], sp.ImmutableMatrix], col
     return sp.ImmutableSparseMatrix(3 * vectors, columns or 3 * vectors, entries)
 
 
-def _form(motion: Motion, vectors: list[str], sums: list[list[int]], surface: ImagingSurface | None) -> PointsForm:
+def form_of(motion: Motion, vectors: list[str], sums: list[list[int]], surface: ImagingSurface | None) -> PointsForm:
     """Form of points that are sums of the state's vectors."""
     C = np.zeros((len(sums), 3, len(vectors), 3))
     for k, terms in enumerate(sums):
