@@ -148,4 +148,14 @@ MISTAKES = {
         "four": ["a", "c", "d"],
         "tail-gain": [8, 10, 16],
     },
+    "15_where_scale_comes_from": {
+        "growing": [
+            "s' = b3 s y3",  # the sign
+            "s' = -b3 y3^2",  # the rate of y3
+            "s' = -b3 s",
+            "s' = -b3 s y3^2",
+        ],
+        "bigger": ["a", "c", "d"],
+        "slow": [0.3, 0.6, 1.2],
+    },
 }
