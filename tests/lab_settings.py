@@ -116,8 +116,8 @@ def assert_follows_python(settings, told, tolerance=1e-8):
 
     Random gains make observers unstable, stiff or switching without end; such a run multiplies the last digit, which
     two languages need not share.  How much it does is seen in Python alone, by moving the samples by 1e-12: page and
-    Python may differ by the tolerance, relative to 1 or the value, and by as much as that; and once Python's own runs
-    have parted by 1e-4, nothing is left to compare but whether they diverge.  Over the first second they may differ
+    Python may differ by the tolerance, relative to 1 or the value, and by ten times as much as that, for they round at
+    every step and not at the samples only; and once Python's own runs have parted by 1e-4, nothing is left to compare but whether they diverge.  Over the first second they may differ
     by 1e-6 and no more.  What is told is for each observer its "estimate", with None for what is not finite, and
     "divergedAt".
     """
@@ -141,7 +141,7 @@ def assert_follows_python(settings, told, tolerance=1e-8):
         decided = np.broadcast_to(own < PARTED, off.shape)
         there = np.isfinite(run.estimate)
         assert (np.isfinite(found) == there)[decided].all()
-        assert (off <= tolerance + own)[decided & there].all(), (name, off[decided & there].max())
+        assert (off <= tolerance + 10 * own)[decided & there].all(), (name, off[decided & there].max())
         early = decided & there & (run.time <= run.time[0] + 1)[:, None]
         assert (off[early] <= 1e-6).all(), (name, off[early].max())
 

@@ -581,6 +581,7 @@ LABELS = {
     "consistency": ["time (s)", "normalised innovation"],
     "depth_errors": ["relative error of the depth after 2 s; the dots are medians"],
     "distance": ["time (s)", "depth $Z$ (m)", "relative error (%)"],
+    "efficiencies": ["settling time (s)", "error / bound"],
     "entries": ["time (s)", "depth moves by (%)"],
     "error_norm": ["time (s)", "norm of the error $|\\rho|$"],
     "excitation": ["end of the 5 s window (s)", r"smallest eigenvalue of $\int w\,w^{\mathsf{T}}dt$"],

@@ -18,9 +18,11 @@ from sample_sizes import sampled
 from percept_obs import papers
 from percept_obs.checking.slips import slips, symbols_in
 from percept_obs.papers import (
+    AIDALA1983,
     CHAUMETTE2006,
     CHWA2019,
     DE_LUCA2008,
+    HAMEL2017,
     INABA2005,
     MA2005,
     NAMED,
@@ -58,6 +60,8 @@ PAPERS = {
     "De Luca": Known(DE_LUCA2008, 0, 350),
     "Spica": Known(SPICA2014, 0, 100),
     "Chaumette": Known(CHAUMETTE2006, 0, 30),
+    "Aidala": Known(AIDALA1983, 0, 20),
+    "Hamel": Known(HAMEL2017, 0, 20),
 }
 FEW = 2
 """Slips of each formula that the quick tests try."""

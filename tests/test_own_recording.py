@@ -268,7 +268,7 @@ def test_from_a_folder_to_a_table_of_all_observers_in_eight_lines(tmp_path, monk
     found = eval(compile(ast.Expression(table.value), "<README>", "eval"), names)
     assert (len(found.choosing), len(found.reporting)) == (2, 2)
     table = found.side_by_side
-    assert len(table) == 10
+    assert len(table) == 12
     assert "needs a motion with constant coefficients" in table.loc["immersion and invariance", "remark"]
     kalman = found.table[found.table["observer"] == "extended Kalman"].set_index("after")
     assert kalman.loc[1.0, "median"] < 0.05

@@ -7,11 +7,12 @@ import pytest
 import sympy as sp
 
 from percept_obs import Camera, Gaussian, PointsScenario, cramer_rao, ekf, luenberger, record, scenarios, track
-from percept_obs.papers import AIDALA1983, HAMEL2017, judge
 from percept_obs.points import camera_imu, riccati, trusting
 from percept_obs.points.gramian import gramian
 from percept_obs.recording.imu import read_imu
+from percept_obs.recording.state_scenario import StateScenario
 from percept_obs.system.bearings import ACCELERATION, bearings_only, own_ship
+from percept_obs.system.inertial import camera_with_imu, imu
 
 START = (0.4, 0.2, 4.0, -0.9, 0.0, -0.4, 0.0, 9.81, 0.0)
 GUESS = (0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 9.0, 0.0)
@@ -62,9 +63,38 @@ def test_on_a_straight_course_the_range_is_in_no_rate_but_its_own():
     assert form.x2[-1] not in steady.free_symbols
 
 
+def in_millimetres(scene):
+    """A scene with its lengths in millimetres, which are the same world."""
+    view, known = scene.seen, scene.known_motion
+    samples = known.signal.samples * 1000.0 ** np.array(known.lengths)
+    state = np.array(scene.state) * 1000.0 ** np.array(view.powers)
+    true = scene.motion.signal.samples * 1000.0 ** np.array(scene.motion.lengths)
+    motions = (
+        imu(each[:, :3], each[:, 3:], other.signal.times) for each, other in ((true, scene.motion), (samples, known))
+    )
+    biases = lambda times: scene.constants(times) * [1, 1, 1, 1000, 1000, 1000]  # noqa: E731
+    return StateScenario("mm", view, next(motions), state, scene.duration, next(motions), biases, unit=1000.0)
+
+
 @pytest.mark.slow
-def test_the_papers_statements_hold():
-    assert judge([AIDALA1983, HAMEL2017], processes=1)
+def test_millimetres_change_nothing_relative():
+    scene, errors = scenarios.held_phone(seed=1), []
+    for each in (scene, in_millimetres(scene)):
+        seen = record(each, 2, Camera(1 / 30, Gaussian(1e-3)), seed=1)
+        observer = ekf(camera_with_imu().partition("y1", "y2"), noise_variance=1e-6, velocity_noise=1e-5)
+        errors.append(track(seen, observer, {"y3": 0.5 / each.unit}).relative_error)
+    assert np.allclose(*errors, rtol=1e-7, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_one_landmark_and_a_telephone_s_imu_with_unknown_biases_find_the_scale():
+    for seed in range(5):
+        seen = record(phone := scenarios.held_phone(seed=100 + seed), 10.1, Camera(1 / 30, Gaussian(1e-3)), seed=seed)
+        densities = {"turning_noise": 1.6e-4**2, "velocity_noise": 2.8e-3**2}
+        observer = ekf(camera_with_imu().partition("y1", "y2"), noise_variance=1e-6, **densities)
+        gravity = -phone.known_motion.known(0.0)[0, 3:]
+        run = track(seen, observer, {"y3": 0.5, **{f"q{k + 1}": 0.5 * each for k, each in enumerate(gravity)}})
+        assert run.relative_error[300] < 0.02
 
 
 @pytest.mark.parametrize(

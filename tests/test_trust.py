@@ -89,7 +89,7 @@ def test_it_says_what_was_known_then():
 def test_what_makes_no_sense_is_refused():
     run = track(paused(), FILTER)
     for ask, message in (
-        (lambda: trust_over_time(run, count=0), "0 times were asked for"),
+        (lambda: trust_over_time(run, count=0), "count is 0"),
         (lambda: trust_over_time(run, tolerance=0), "must be positive"),
         (lambda: trust_over_time(track(paused().between(0, 1), FILTER)), "40 are needed"),
         (lambda: trust(run), "expected a TrustOverTime"),

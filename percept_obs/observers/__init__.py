@@ -20,7 +20,8 @@ from percept_obs.observers.gpebo import gpebo as gpebo
 from percept_obs.observers.equivariant import equivariant_filter as equivariant_filter
 from percept_obs.observers.gains import Gain as Gain
 from percept_obs.observers.immersion_and_invariance import NotIntegrable as NotIntegrable
-from percept_obs.observers.parts import NeedsMotion as NeedsMotion, noise_bias as noise_bias
+from percept_obs.observers.known_motion import NeedsMotion as NeedsMotion
+from percept_obs.observers.parts import noise_bias as noise_bias
 from percept_obs.observers.schedule import scheduled as scheduled
 from percept_obs.system.forms import NeedsMoreOutputs as NeedsMoreOutputs
 

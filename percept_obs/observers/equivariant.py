@@ -5,7 +5,8 @@ import sympy as sp
 from percept_obs.observers.extended_kalman import EXACT, GIVEN, NEVER, P1, Q, R
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain, grid
-from percept_obs.observers.parts import first_seen, hats, motion_on_surface, on_surface, symmetric, upper
+from percept_obs.observers.known_motion import NeedsMotion, motion_on_surface, on_surface, symmetric, upper
+from percept_obs.observers.parts import first_seen, hats
 from percept_obs.system.forms import CanonicalForm, NeedsMoreOutputs
 from percept_obs.system.motion import cross
 from percept_obs.system.perspective import gradients_on
@@ -18,16 +19,25 @@ FAR, INFINITE = "inverse distance that stands for a start farther away", "a rang
 
 
 def needs_all(form: CanonicalForm) -> ValueError | None:
-    """Return an error if the form has no motion on a surface, or an image coordinate is hidden."""
-    found = on_surface(form)
-    return NeedsMoreOutputs(form) if found is None and len(form.x2) > 1 else found
+    """Return an error if the form has no motion on a plain surface, or an image coordinate is hidden."""
+    if (found := on_surface(form)) is not None:
+        return found
+    surface = motion_on_surface(form)[2]
+    if len(form.x2) > 1:
+        return NeedsMoreOutputs(form)
+    if surface.distance not in POINT:
+        return NeedsMotion(
+            f"the filter's equations on the {surface.name} are too long to compile; use a surface whose distance is a "
+            "coordinate of the point, such as the pinhole, or the extended Kalman filter"
+        )
+    return None
 
 
 @family(
     name="equivariant",
     title="Equivariant filter (EqF)",
     source="van Goor, Hamel and Mahony 2020",
-    needs="all image coordinates; the motion",
+    needs="all image coordinates of the pinhole or alike; the motion",
     claim="local; the estimate stays in front of the camera, as no correction turns a range around",
     gains=(
         Gain(R, "noise_variance", 1e-4 / 3, 1e-7, 1e-2, "1", "variance of the noise in each output", R > 0, EXACT),

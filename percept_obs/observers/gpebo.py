@@ -4,16 +4,8 @@ import sympy as sp
 
 from percept_obs.observers.family import Derived, family
 from percept_obs.observers.gains import Gain, grid
-from percept_obs.observers.parts import (
-    NOISE_GAIN,
-    NeedsMotion,
-    hats,
-    motion_on_surface,
-    on_surface,
-    sigma2,
-    symmetric,
-    upper,
-)
+from percept_obs.observers.known_motion import NeedsMotion, motion_on_surface, on_surface, symmetric, upper
+from percept_obs.observers.parts import NOISE_GAIN, hats, sigma2
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.perspective import gradients_on
 from percept_obs.system.surfaces import POINT

@@ -8,8 +8,7 @@ from sympy.logic.boolalg import Boolean
 
 from percept_obs.compile.equations import Expressions, Symbols
 from percept_obs.observers.gains import Gain
-from percept_obs.system.forms import CanonicalForm, PartitionedSystem
-from percept_obs.system.surfaces import ImagingSurface
+from percept_obs.system.forms import CanonicalForm
 from percept_obs.validation import checked
 
 M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
@@ -26,36 +25,6 @@ NOISE_GAIN = Gain(
     sigma2, "noise_variance", 0, 0, 1e-3, "1", "variance of the noise whose bias is taken out", sigma2 >= 0, VARIANCE
 )
 """Gain of `noise_bias`."""
-
-
-class NeedsMotion(ValueError):
-    """The form does not know its motion or its surface, or its outputs give no equation of the point by themselves."""
-
-
-def on_surface(form: PartitionedSystem) -> NeedsMotion | None:
-    """Return an error if the form knows no motion seen on an imaging surface, or a size is seen on it."""
-    if form.motion is None or not isinstance(form.view, ImagingSurface):
-        return NeedsMotion("this form does not know its motion and surface; make it by PerspectiveSystem.measure")
-    if form.view.radii:
-        return NeedsMotion("a size of an unknown radius gives no equation of the point; use a surface without it")
-    return None
-
-
-def motion_on_surface(form: PartitionedSystem) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix, ImagingSurface]:
-    """Return A, b and the surface of a form to which `on_surface` has no objection."""
-    assert form.motion is not None
-    assert isinstance(form.view, ImagingSurface)
-    return form.motion.A, form.motion.b, form.view
-
-
-def symmetric(letter: str) -> sp.ImmutableMatrix:
-    """Return a symmetric matrix of symbols, shape (3, 3), such as Q11, Q12, ..."""
-    return sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"{letter}{min(i, j) + 1}{max(i, j) + 1}", real=True))
-
-
-def upper(matrix: sp.ImmutableMatrix) -> Expressions:
-    """Return the entries of a symmetric matrix on its diagonal and above, row by row."""
-    return tuple(matrix[i, j] for i in range(matrix.rows) for j in range(i, matrix.cols))
 
 
 def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:

@@ -87,7 +87,7 @@ ENTRIES = (
     at("exponential decrease", "", "", "the law v = -lambda L^+ e with the true depth")(
         (), decays_exponentially, "exactly for three points in general position; else near the goal", known=Known.RUNS
     ),
-    at("constant approximation", "", "", "L at the goal, or with a wrong depth, near the goal")(
+    at("approximation", "", "", "L at the goal, or with a wrong depth, near the goal")(
         (), stays_stable_near_the_goal, "for a square of 0.4 m at 1 m and commands without delay", known=Known.RUNS
     ),
     at("from afar", "", "", "the same approximation away from the goal")(

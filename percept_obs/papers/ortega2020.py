@@ -70,8 +70,8 @@ def from_one_output(printed: Printed) -> Finding:
 
 
 ENTRIES = (
-    at("state as constants", "", "", "the state is known but for constants")((), moves_as_the_point),
-    at("linear regression", "", "", "the outputs are linear in the constants")((), normal_equations),
+    at("constants", "", "", "the state is known but for constants")((), moves_as_the_point),
+    at("regression", "", "", "the outputs are linear in the constants")((), normal_equations),
     at("mixing", "", "", "each constant has an equation of its own")((), decays_by_itself),
     at("one output", "", "", "the constants are found from one output")(
         (), from_one_output, "not an example of these papers", known=Known.RUNS

@@ -127,7 +127,7 @@ def trust_over_time(run: Run, tolerance: float = TOLERANCE, count: int = 24) -> 
     if length < 2 * FEWEST:
         raise ValueError(f"the run has {length} samples; {2 * FEWEST} are needed to say how far it can be trusted")
     if not 1 <= count <= length:
-        raise ValueError(f"{count} times were asked for; from 1 to the {length} samples of the run make sense")
+        raise ValueError(f"count is {count}; from 1 to the {length} samples of the run make sense")
     index = np.unique(np.linspace(length - 1, FEWEST, count).astype(int))
     return TrustOverTime(run, tolerance, index, tuple(_until(run, int(k)).trust(tolerance) for k in index))
 

@@ -3,7 +3,7 @@
 Printed when the package is built, see printing.py; those of a user when the lab opens, see registry.py.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import lru_cache
 from types import MappingProxyType
 
@@ -41,6 +41,8 @@ SIZE = ("y1", "y2", "s")
 """Outputs of the pinhole with the apparent size of a sphere."""
 OF_SIZE = ("identifier_based", "extended_kalman")
 """Observers that are printed for it: all others would make the file a seventh larger."""
+OF_THE_PINHOLE = ("gpebo", "equivariant_filter")
+"""Observers of many states, which are printed for the pinhole only: on all surfaces they take a fifth of the file."""
 RADIUS = 1.2
 """Radius of the sphere in metres; no observer knows it."""
 
@@ -157,8 +159,15 @@ def texts_for_the_page() -> Parts:
     yield "", model_for_the_page()
     for surface in SURFACES:
         for outputs in system_of(surface).output_choices:
-            yield f"forms/{key_of(surface, outputs)}", form_for_the_page(form_of(surface, outputs), BY_NAME)
-    form = form_for_the_page(form_of("pinhole", SIZE), {name: BY_NAME[name] for name in OF_SIZE})
-    others = BY_NAME.keys() - {*OF_SIZE}
-    refused = dict.fromkeys(sorted(others), "with the size the page has the identifier-based observer and the EKF only")
-    yield f"forms/{key_of('pinhole', SIZE)}", {**form, "refused": refused}
+            left_out = () if surface == "pinhole" and "y1" in outputs else OF_THE_PINHOLE
+            yield _printed(surface, outputs, left_out, "the page has it on the pinhole with y1; track runs it here")
+    few = "with the size the page has the identifier-based observer and the EKF only"
+    yield _printed("pinhole", SIZE, BY_NAME.keys() - {*OF_SIZE}, few)
+
+
+def _printed(surface: str, outputs: tuple[str, ...], left_out: Collection[str], why: str) -> tuple[str, Texts]:
+    """Place and texts of a form; who is left out, and has no reason of its own, is refused for this one."""
+    form = form_of(surface, outputs)
+    texts = form_for_the_page(form, {name: make for name, make in BY_NAME.items() if name not in left_out})
+    texts["refused"] |= {name: BY_NAME[name].refusal(form) or why for name in sorted(left_out)}
+    return f"forms/{key_of(surface, outputs)}", texts

@@ -220,7 +220,7 @@ class Lab(anywidget.AnyWidget):
         >>> from percept_obs.labs import observer_lab
         >>> page = Path(tempfile.mkdtemp()) / "lab.html"
         >>> observer_lab(outputs=["y1"]).save(page)
-        >>> page.stat().st_size < 410_000
+        >>> page.stat().st_size < 430_000
         True
         """
         target = Path(file)
