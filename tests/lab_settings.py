@@ -116,10 +116,10 @@ def assert_follows_python(settings, told, tolerance=1e-8):
 
     Random gains make observers unstable, stiff or switching without end; such a run multiplies the last digit, which
     two languages need not share.  How much it does is seen in Python alone, by moving the samples by 1e-12: page and
-    Python may differ by the tolerance, relative to 1 or the value, and by ten times as much as that, for they round at
-    every step and not at the samples only; and once Python's own runs have parted by 1e-4, nothing is left to compare but whether they diverge.  Over the first second they may differ
-    by 1e-6 and no more.  What is told is for each observer its "estimate", with None for what is not finite, and
-    "divergedAt".
+    Python may differ by the tolerance, relative to 1 or the value, and by ten times as much as that, for they round
+    at every step and not at the samples only; and once Python's own runs have parted by 1e-4, nothing is left to
+    compare but whether they diverge.  Over the first second they may differ by 1e-6 and no more.  What is told is for
+    each observer its "estimate", with None for what is not finite, and "divergedAt".
     """
     believed = settings["believed"] and affine(settings["believed"]["A"], settings["believed"]["b"])
     start = {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]
