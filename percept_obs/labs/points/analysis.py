@@ -19,10 +19,10 @@ STILL = 1e-6
 def in_words(run: PointsRun, window: float) -> dict[str, Any]:
     """Sentences, and the rate in 1/s at which the error decays at least, or None where nothing is guaranteed.
 
-    The Gramian's windows last `window` seconds; a shorter run is one window.
+    The Gramian's windows last `window` seconds, at least from sample to sample; a shorter run is one window.
     """
     recording = run.recording
-    window = min(window, float(run.time[-1]))
+    window = max(min(window, float(run.time[-1])), float(recording.intervals.max()))
     seen, sentences, bound = gramian(recording, window).holds, [], None
     if not seen and (pair := linear_gramian(recording, window)).holds:
         sentences.append(
