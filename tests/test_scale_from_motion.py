@@ -72,7 +72,10 @@ def in_millimetres(scene):
     motions = (
         imu(each[:, :3], each[:, 3:], other.signal.times) for each, other in ((true, scene.motion), (samples, known))
     )
-    biases = lambda times: scene.constants(times) * [1, 1, 1, 1000, 1000, 1000]  # noqa: E731
+
+    def biases(times):
+        return scene.constants(times) * [1, 1, 1, 1000, 1000, 1000]
+
     return StateScenario("mm", view, next(motions), state, scene.duration, next(motions), biases, unit=1000.0)
 
 

@@ -45,7 +45,7 @@ def derived() -> Values:
 
 
 def at_the_focus(printed: Printed) -> Finding:
-    """What is left of w at the focus of expansion, of the image and of the size."""
+    """Rows of w at the focus of expansion, those of the image and that of the size."""
     there = dict(zip(SYSTEM.coordinates, SYSTEM.foe, strict=False))
     left = dict(zip(W, FORM.w.subs(there).applyfunc(sp.cancel), strict=True))
     return judged(all(is_identity(line, left) for line in printed))

@@ -43,7 +43,7 @@ def follows_the_point(printed: Printed) -> Finding:
 
 
 def linear_error(printed: Printed) -> Finding:
-    """Of p = G (e3 + d) the error d obeys d' = F d exactly: F is read from the rate of the covariance."""
+    """The error d of p = G (e3 + d) obeys d' = F d exactly: F is read from the rate of the covariance."""
     here = dict(zip(STATE, SCALED, strict=False))
     inverse, rate = SCALED.inv(), RATE.xreplace(here)
     moved = inverse * (MOTION.A * SCALED * (E3 + d) + MOTION.b - rate * (E3 + d))

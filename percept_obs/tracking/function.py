@@ -131,7 +131,7 @@ def _follow_by_function(
     claims = None if observer.covariance is None else np.full((len(recording.time), n, n), np.nan)
 
     def asked(part: str, shape: tuple[int, ...] | None, *arguments: Any) -> Array:
-        """What one of the functions gives; NaN where its numbers give out."""
+        """Result of one of the functions; NaN where its numbers give out."""
         try:
             with np.errstate(all="ignore"):
                 found = np.asarray(getattr(observer, part)(*arguments), dtype=float)
