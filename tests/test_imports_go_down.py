@@ -19,7 +19,7 @@ FLOORS = (
     ("cli",),
     ("site",),
     ("labs",),
-    ("figures", "papers", "exercises"),
+    ("figures", "papers", "exercises", "film"),
     ("checking",),
     ("studies",),
     ("structure", "points"),
