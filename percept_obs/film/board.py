@@ -77,7 +77,9 @@ class Board:
     @property
     def name(self) -> str:
         """Name that is printed on it."""
-        return f"{self.columns} x {self.rows} squares of {1000 * self.square:g} mm, markers of {1000 * self.marker:g} mm"
+        return (
+            f"{self.columns} x {self.rows} squares of {1000 * self.square:g} mm, markers of {1000 * self.marker:g} mm"
+        )
 
     @property
     def size(self) -> tuple[float, float]:
@@ -109,9 +111,13 @@ class Board:
         """Return the board in grey values, shape (h, w), with so many pixels a square, a multiple of 4."""
         return self.charuco.generateImage((self.columns * pixels, self.rows * pixels))
 
-    def detect(self, picture: Any) -> tuple[Indices, Array]:
-        """Return the numbers of the corners in a grey picture, and their pixels, shapes (m,) and (m, 2)."""
-        corners, numbers, _, _ = self._detector.detectBoard(picture)
+    def detect(self, picture: Any) -> tuple[Indices, Array, bool]:
+        """Return the numbers of the corners in a grey picture, shape (m,), and their pixels, shape (m, 2).
+
+        The last value is True if a marker is seen twice, so that there are two boards.
+        """
+        corners, numbers, _, markers = self._detector.detectBoard(picture)
+        twice = markers is not None and len(np.unique(markers)) < len(markers)
         if numbers is None:
-            return np.empty(0, dtype=int), np.empty((0, 2))
-        return np.ravel(numbers).astype(int), np.reshape(corners, (-1, 2)).astype(float)
+            return np.empty(0, dtype=int), np.empty((0, 2)), twice
+        return np.ravel(numbers).astype(int), np.reshape(corners, (-1, 2)).astype(np.float64), twice
