@@ -1,4 +1,4 @@
-"""The command line: open the notebooks, write them as pages, judge equations, compare observers, run ensembles."""
+"""The command line: notebooks, pages, verdicts on equations, comparisons, ensembles, and boards to print."""
 
 import argparse
 import json
@@ -141,6 +141,36 @@ def sweep(options: argparse.Namespace) -> int:
     return 0
 
 
+STEPS = """1. Print board.pdf at 100 %, not "fit to page".
+2. Measure the ruler below the board: it must be 100 mm. If it is 97.5 mm, say --ruler 97.5 when you read the film.
+3. Lay the board flat, put things around it, and film for 20 s while you move the telephone slowly past them."""
+
+
+def board(options: argparse.Namespace) -> int:
+    """Write a chessboard with markers to print and to film: board.pdf to true size, and its numbers, board.json."""
+    from percept_obs.film import Board, board_pdf
+    from percept_obs.film.printing import SHARE, largest_square
+
+    directory: Path = options.directory
+    _refuse_a_file(directory)
+    square = options.square or largest_square(options.columns, options.rows)
+    marker = options.marker or SHARE * square
+    made = Board(options.columns, options.rows, square / 1000, marker / 1000)
+    files = {
+        directory / "board.pdf": board_pdf(made, options.paper),
+        directory / "board.json": made.text.encode(),
+    }
+    for target, content in files.items():
+        if target.exists() and target.read_bytes() != content:
+            raise _Mistake(f"{target} is there and holds something else; name another folder, or delete it")
+    directory.mkdir(parents=True, exist_ok=True)
+    for target, content in files.items():
+        write_whole(target, content)
+        print(f"wrote   {target}")
+    print(f"{made.name}\n{STEPS}")
+    return 0
+
+
 class _Mistake(ValueError):
     """Raised with a message and an exit code."""
 
@@ -193,6 +223,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add = command(sweep, "run an ensemble")
     add("file", type=Path, metavar="FILE", help="a TOML file that describes the ensemble")
     add("--scheduler", default="", metavar="ADDRESS", help="of a Dask cluster, tcp://host:8786")
+
+    add = command(board, "write a board to print and film")
+    add("directory", nargs="?", type=Path, default=Path("."), metavar="DIR", help="folder of the files (default: here)")
+    add("--paper", choices=("A4", "letter"), default="A4", help="(default: %(default)s)")
+    add("--columns", type=_positive(int), default=7, help="number of squares in a row (default: %(default)s)")
+    add("--rows", type=_positive(int), default=5, help="number of rows (default: %(default)s)")
+    add("--square", type=_positive(float), metavar="MM", help="side of a square (default: what fits on both papers)")
+    add("--marker", type=_positive(float), metavar="MM", help="side of a marker (default: 3/4 of the square's)")
 
     options = parser.parse_args(arguments)
     try:
