@@ -76,11 +76,6 @@ class Film(Footage):
     seen: Seen | None = None
 
     @property
-    def source(self) -> str:
-        """Name of the file."""
-        return self.video.path.name
-
-    @property
     def motion(self) -> Motion:
         """Motion of a point at rest in the camera's frame."""
         return self.path.motion

@@ -108,7 +108,17 @@ def read_film(
         )
     frames = undistorted(sighting, camera)
     return Film(
-        recordings, (BOARD, TRIANGULATION), (), frames, video, camera, travelled, findings, sighting, printed, seen
+        recordings,
+        (BOARD, TRIANGULATION),
+        frames,
+        video.path.name,
+        video,
+        camera,
+        travelled,
+        findings,
+        sighting,
+        printed,
+        seen,
     )
 
 

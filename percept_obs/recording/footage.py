@@ -19,10 +19,10 @@ class Footage(Sequence[Recording]):
     recordings : tuple of Recording
     references : tuple of str
         Names of the distances to which estimates are compared, the surest first.
-    doubts : tuple of str
-        Sentences on what spoils the film, if anything does.
     frames : Frames
-        Undistorted pictures of the film.
+        Undistorted pictures of the film, by the clock of the recordings.
+    source : str
+        Name of the film.
 
     See Also
     --------
@@ -33,15 +33,15 @@ class Footage(Sequence[Recording]):
     >>> from percept_obs import record, scenarios
     >>> from percept_obs.recording import render
     >>> seen = record(scenarios.planar(), 2)
-    >>> footage = Footage((seen,), ("truth",), (), render(seen, count=2, size=32))
+    >>> footage = Footage((seen,), ("truth",), render(seen, count=2, size=32), "a ball")
     >>> len(footage), footage[0].names
     (1, ('y1', 'y2'))
     """
 
     recordings: tuple[Recording, ...]
     references: tuple[str, ...]
-    doubts: tuple[str, ...]
     frames: Frames
+    source: str
 
     @overload
     def __getitem__(self, index: int) -> Recording: ...

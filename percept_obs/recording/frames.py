@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -79,26 +79,6 @@ class Frames:
         if extent.shape != (4,) or extent[0] == extent[1] or extent[2] == extent[3]:
             raise ValueError(f"the extent is {self.extent!r}; give y1 of left and right, y2 of lower and upper edge")
         vars(self).update(images=images, time=time, extent=tuple(extent.tolist()))
-
-
-class Filmed(Protocol):
-    """Recordings of one film, a sequence, with its frames by the clock of the recordings.
-
-    See Also
-    --------
-    percept_obs.labs.observer_lab : Shows one.
-    """
-
-    @property
-    def frames(self) -> Frames:
-        """Frames of the whole film."""
-
-    @property
-    def source(self) -> str:
-        """Name of the film."""
-
-    def __iter__(self) -> Iterator[Recording]:
-        """Recordings of one point each, with its name as their source."""
 
 
 def _encoded(image: Any, number: int) -> bytes:

@@ -82,6 +82,9 @@ class Recording:
         Length, in the recording's own unit of length, by which observers and studies measure hidden lengths inside:
         gains and variances are numbers in it.  So nothing relative changes if all lengths and the unit are written in
         millimetres.  Without effect on several points, whose equations are linear.
+    doubt : str
+        Reason why images or motion are not as they are known, such as "the lens focuses anew"; no estimate is trusted
+        then.
 
     Warns
     -----
@@ -119,6 +122,7 @@ class Recording:
     distances: Mapping[str, Array] = field(default_factory=dict)
     source: str = ""
     unit: float = 1.0
+    doubt: str = ""
 
     def __post_init__(self) -> None:
         _refuse_order("outputs", self.outputs, list(self.names))

@@ -278,6 +278,8 @@ class Run:
             return said("no estimate")
         if not view.point_shape and not view.inverse(last) > 0:
             return said("nowhere")
+        if self.recording.doubt:
+            return said("doubted", doubt=self.recording.doubt)
         if self.observer.covariance is not None:
             claims = np.sqrt(np.maximum(np.diagonal(self.covariance[-1]), 0))
             said = partial(said, claimed=relative_deviation(view, last, claims, known))
