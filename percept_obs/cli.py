@@ -123,6 +123,29 @@ def compare(options: argparse.Namespace) -> int:
     return 0
 
 
+def film(options: argparse.Namespace) -> int:
+    """Read a film of a board; write it with distances drawn in, a live lab, tables, and a page that shows them."""
+    from percept_obs.film import Board, read_film
+    from percept_obs.film.page import page
+    from percept_obs.labs import observer_lab
+    from percept_obs.studies.all_observers import all_observers
+
+    board = (Board.from_json(options.board) if options.board else Board()).printed(options.ruler)
+    directory = options.directory or options.file.with_name(f"{options.file.stem}_distances")
+    _refuse_a_file(directory)
+    found = read_film(options.file, board)
+    directory.mkdir(parents=True, exist_ok=True)
+    print(found.sentence)
+    table = all_observers(found, max_tracks=options.tracks)
+    print(table)
+    found.overlay(directory / "film.mp4")
+    observer_lab(found).save(directory / "lab.html")
+    found.distances().to_csv(directory / "distances.csv", index=False)
+    write_whole(directory / "index.html", page(found, table, "film.mp4", "lab.html").encode())
+    print(f"open {directory / 'index.html'}")
+    return 0
+
+
 def sweep(options: argparse.Namespace) -> int:
     """Run the ensemble that a TOML file describes, here or on a Dask cluster; it goes on where it was stopped."""
     from contextlib import nullcontext
@@ -219,6 +242,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add("--seeds", type=_positive(int), default=50, help="number of recordings")
     add("--noise", type=_positive(float), default=0.01, help="bound of the noise")
     add("--duration", type=_positive(float), default=80.0, help="seconds")
+
+    add = command(film, "find how far things are in a film of a board")
+    add("file", type=Path, metavar="FILE", help="a film, such as film.mp4")
+    add("directory", nargs="?", type=Path, metavar="DIR", help="folder for the results (default: beside the film)")
+    add("--board", type=Path, metavar="FILE", help="board.json of the printed board (default: the default board)")
+    ruler = "length that the printed ruler of 100 mm has on paper"
+    add("--ruler", type=_positive(float), default=100.0, metavar="MM", help=f"{ruler} (default: %(default)g)")
+    add(
+        "--tracks", type=_positive(int), default=40, help="most tracks in the table of observers (default: %(default)s)"
+    )
 
     add = command(sweep, "run an ensemble")
     add("file", type=Path, metavar="FILE", help="a TOML file that describes the ensemble")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.compile import Array, Flags
+from percept_obs.compile import Array, Flags, Indices
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
 
@@ -41,7 +41,7 @@ class Seen:
     ones, shape (m, 6, 6), and `error` the root mean square error of the corners in pixels.
     """
 
-    index: Array
+    index: Indices
     poses: Poses
     covariance: Array
     error: float

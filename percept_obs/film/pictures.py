@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from percept_obs.film.sighting import Sighting
@@ -13,7 +15,7 @@ def undistorted(sighting: Sighting, camera: PixelCamera) -> Frames:
     """Return the small pictures of a film, straightened, by its clock."""
     import cv2
 
-    first = cv2.imdecode(np.frombuffer(sighting.small[0], np.uint8), cv2.IMREAD_UNCHANGED)
+    first: Any = cv2.imdecode(np.frombuffer(sighting.small[0], np.uint8), cv2.IMREAD_UNCHANGED)
     (height, width), (whole, _) = first.shape[:2], camera.size or first.shape[1::-1]
     factor = width / whole
     focal = factor * np.array(camera.focal)

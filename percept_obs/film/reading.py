@@ -131,8 +131,9 @@ def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
     if enough < FEWEST_PICTURES:
         raise ValueError(
             f"{enough} of {len(count)} pictures of '{video.path}' show {FEWEST} corners of the board, {board.name}, "
-            f"and {FEWEST_PICTURES} are needed. Is it this board (board=...)? It must lie flat, be sharp, and fill a third "
-            "of the picture's width. A film without a board needs poses=... and camera=..., as read_colmap finds them"
+            f"and {FEWEST_PICTURES} are needed. Is it this board (board=...)? It must lie flat, be sharp, and "
+            "fill a third of the picture's width. A film without a board needs poses=... and camera=..., as read_colmap "
+            "finds them"
         )
 
 

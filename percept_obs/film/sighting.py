@@ -7,7 +7,6 @@ import io
 import json
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -49,10 +48,10 @@ SMALL, EVERY, MOST_SMALL = 640, 0.1, 240
 class Sighting:
     """Corners in K pictures of a film, in its own pixels.
 
-    `corners` are the board's, shape (K, n, 2), NaN where one is not seen.  The tracks of others begin in the pictures
-    `first`, last for `length` pictures, and lie one after the other in `tracked`, shape (N, 2).  `width` is that of the
-    board's edges in pixels; `twice` is true where a marker was seen twice.  Small pictures, JPEG files of the sizes `sizes` one after the other in `files`, are shown
-    at the times `shown`.
+    `corners` are the board's, shape (K, n, 2), NaN where one is not seen.  `width` is that of the board's edges in
+    pixels, and `twice` is true where a marker was seen twice.  The tracks of other corners begin in the pictures
+    `first`, last for `length` pictures, and lie one after the other in `tracked`, shape (N, 2).  Small pictures, JPEG
+    files of the sizes `sizes` one after the other in `files`, are shown at the times `shown`.
     """
 
     time: Array

@@ -70,7 +70,7 @@ def open_film(path: PathLike) -> Video:
             count = stream.frames or int(seconds * float(stream.average_rate or 0))
     except av.error.FFmpegError as error:
         raise ValueError(
-            f"'{file}' is no film that can be read ({error.strerror}); if it was cut off, film anew, else convert it to MP4"
+            f"'{file}' is no film that can be read ({error.strerror}); film anew, or convert it to MP4"
         ) from None
     size = (first.width, first.height)
     return Video(file, size[::-1] if turns % 2 else size, turns, count)
