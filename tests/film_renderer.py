@@ -1,0 +1,444 @@
+"""Films of a printed board on a table with things around it, drawn from a known motion, with the whole truth.
+
+Pixels are counted as in OpenCV: (0, 0) is the centre of the first one. A film higher than wide is stored turned, with a
+display matrix, as telephones do; the truth is about the upright picture.
+"""
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numba import njit
+from scipy.interpolate import RectBivariateSpline
+from scipy.spatial.transform import Rotation
+
+from percept_obs import PixelCamera, Poses
+from percept_obs.film import Board
+
+BOARD = Board()
+CENTRE = np.array([*BOARD.size, 0.0]) / 2
+TICKS = 90_000
+"""Of the film's clock in a second."""
+UPRIGHT = np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1.0]])
+"""From the camera's frame of an upright picture to the frame of the sensor, whose x axis points up."""
+BLOCK = 48
+"""Rows that are drawn with the same size of a texture."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """Textured rectangle: a corner and two edges in the world, in metres, and grey values."""
+
+    corner: np.ndarray
+    across: np.ndarray
+    down: np.ndarray
+    texture: np.ndarray = field(repr=False)
+
+    @cached_property
+    def sizes(self):
+        """The texture, and smaller ones, each by the square root of 2."""
+        shape, sizes = np.array(self.texture.shape[::-1]), [np.ascontiguousarray(self.texture)]
+        while min(sizes[-1].shape) > 8:
+            small = np.round(shape / 2 ** (len(sizes) / 2)).astype(int)
+            sizes.append(cv2.resize(self.texture, small.tolist(), interpolation=cv2.INTER_AREA))
+        return sizes
+
+    def maps(self, position, matrix):
+        """Matrices that take rays (a, b, 1) of cameras to (s, t, 1) / Z, shape (n, 3, 3): s across, t down, Z depth."""
+        towards, normal = self.corner - position, np.cross(self.across, self.down)
+        rows = [np.cross(self.down, towards), np.cross(towards, self.across), np.broadcast_to(normal, towards.shape)]
+        return np.stack(rows, axis=1) @ matrix / (towards @ normal)[:, None, None]
+
+    @property
+    def corners(self):
+        """Its four corners, shape (4, 3)."""
+        return self.corner + np.array([0 * self.across, self.across, self.across + self.down, self.down])
+
+
+def card(rng, corner, across, down, density, plain=False):
+    """Sheet with a random picture of so many pixels a metre: strong corners of many sizes, or a table's faint grain."""
+    across, down = np.asarray(across, float), np.asarray(down, float)
+    w, h = (max(16, round(np.linalg.norm(edge) * density)) for edge in (across, down))
+    grey = np.full((h, w), rng.uniform(110, 190), np.float32)
+    for cells in (4, 16, 64) if plain else (3,):  # the last is stretched along the grain
+        coarse = rng.normal(size=(cells * (1 + 3 * plain), cells)).astype(np.float32)
+        grey += 7 * cv2.resize(coarse, (w, h), interpolation=cv2.INTER_CUBIC)
+    for size, number in ((0.004, 400), (0.002, 900)) if plain else ((0.03, 25), (0.012, 60), (0.005, 120)):
+        for _ in range(number if plain else round(number * w * h / density**2 / 0.02)):
+            around = rng.uniform(0, 2 * np.pi) + np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 6)))
+            ring = np.stack([np.cos(around), np.sin(around)], 1) * rng.uniform(0.5, 1.2) * size * density
+            points = np.round(ring + rng.uniform(0, [w, h])).astype(np.int32)
+            shade = rng.uniform(80, 200) if plain else rng.uniform(15, 245)
+            cv2.fillPoly(grey, [points], shade, cv2.LINE_8)
+    return Sheet(np.asarray(corner, float), across, down, np.clip(grey, 0, 255).astype(np.uint8))
+
+
+def paper(density, place=(0.0, 0.0), turn=0.0):
+    """The board on its paper, with its upper left corner at a place of the table, turned."""
+    pixels = 4 * round(BOARD.square * density / 4)
+    edge = pixels // 5
+    texture = cv2.copyMakeBorder(BOARD.picture(pixels), *[edge] * 4, cv2.BORDER_CONSTANT, value=255)
+    texture = (25 + 0.82 * texture).astype(np.uint8)  # ink and paper
+    metres = BOARD.square / pixels
+    axes = Rotation.from_rotvec([0, 0, turn]).as_matrix()
+    across, down = axes[:, 0] * texture.shape[1] * metres, axes[:, 1] * texture.shape[0] * metres
+    return Sheet(np.array([*place, 0.0]) - edge * metres * (axes[:, 0] + axes[:, 1]), across, down, texture)
+
+
+def scene(seed, heading=0.0, boards=1, density=2500):
+    """Sheets: the table, boards on it, and boxes and cards around, high ones away from who stands at the heading."""
+    rng = np.random.default_rng([seed, 1])
+    turned = Rotation.from_rotvec([0, 0, heading])
+    side, towards, up = turned.as_matrix().T * [[1], [1], [-1]]
+    table = card(
+        rng, CENTRE - 1.2 * side - 1.1 * towards - 0.001 * up, 2.4 * side, 1.8 * towards, min(density / 2, 2500), True
+    )
+    sheets = [table, *[paper(density), paper(density, (-0.36, 0.02), 0.15)][:boards]]
+    spots = np.array([[-0.31, 0.1], [-0.28, -0.2], [-0.03, -0.24], [0.2, -0.26], [0.33, -0.02], [0.31, 0.2]])
+    for number, spot in enumerate(spots):
+        turn = turned * Rotation.from_rotvec([0, 0, rng.uniform(-0.5, 0.5)])
+        x, y, _ = turn.as_matrix().T
+        foot = CENTRE + side * spot[0] + towards * spot[1] + turned.apply([*rng.uniform(-0.02, 0.02, 2), 0])
+        foot += 0.08 * np.sign(spot[0]) * side * (boards > 1 and abs(spot[0]) > 0.25)
+        w, d = rng.uniform(0.09, 0.15, 2)
+        h = rng.uniform(0.02, 0.09) if spot[1] > 0 else rng.uniform(0.06, 0.25)
+        if number in (2, 4):  # a card that leans back
+            corner, lean = foot - x * w / 2, up * h - y * rng.uniform(0.02, 0.08)
+            sheets.append(card(rng, corner + lean, x * w, -lean, density))
+            continue
+        corner = foot - x * w / 2 - y * d / 2 + up * h
+        sheets.append(card(rng, corner, x * w, y * d, density))
+        for start, edge in ((0 * x, x * w), (y * d, x * w), (0 * x, y * d), (x * w, y * d)):
+            sheets.append(card(rng, corner + start, edge, -up * h, density))
+    return tuple(sheets)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Smooth path of a hand-held camera: "sweep", "axis" (along the optical axis), "turn" (only) or "sideways"."""
+
+    kind: str = "sweep"
+    seed: int = 0
+    heading: float = 0.0
+    tremor: float = 1.0
+
+    def tremors(self, time):
+        """Shift in metres and turn in radians of the trembling hand, each of shape (n, 3)."""
+        rng = np.random.default_rng([self.seed, 2])
+        rate, phase = rng.uniform([2 * np.pi], 6 * np.pi, (3, 6)), rng.uniform(0, 2 * np.pi, (3, 6))
+        waves = np.sin(np.multiply.outer(time, rate) + phase).sum(axis=1) * np.sqrt(2 / 3) * self.tremor
+        return waves[:, :3] * 0.0015, waves[:, 3:] * np.deg2rad(0.2)
+
+    def smooth(self, time):
+        """Positions, shape (n, 3), and rotations without the tremor."""
+        rng = np.random.default_rng([self.seed, 3])
+        phase, pace = rng.uniform(0, 2 * np.pi, 8), rng.uniform(0.85, 1.15, 8)
+        far = rng.uniform(0.55, 0.65)
+        t = np.zeros_like(time) if self.kind != "sweep" else time
+        side, slope, near, x, y, roll = np.sin(
+            np.multiply.outer(t, pace[:6] * [0.5, 0.37, 0.3, 0.6, 0.7, 0.4]) + phase[:6]
+        ).T
+        if self.kind != "sweep":
+            side, slope, near = 0.3 * side, 0.3 * slope, 0 * near
+        turned = Rotation.from_rotvec([0, 0, self.heading])
+        away = np.stack([0.55 * side, 0.42 + 0.3 * slope, -np.ones_like(side)], axis=1)
+        position = (far + 0.06 * near)[:, None] * away / np.linalg.norm(away, axis=1, keepdims=True)
+        ahead = 0.03 * np.stack([x, y, 0 * x], axis=1) - position
+        z = ahead / np.linalg.norm(ahead, axis=1, keepdims=True)
+        right = np.cross([0, 1.0, 0], z)
+        right /= np.linalg.norm(right, axis=1, keepdims=True)
+        rotation = turned * Rotation.from_matrix(np.stack([right, np.cross(z, right), z], axis=2))
+        rotation *= Rotation.from_rotvec(np.multiply.outer(0.12 * roll, [0, 0, 1.0]))
+        position, (a, b) = CENTRE + turned.apply(position), np.sin(np.multiply.outer(time, pace[6:]) + phase[6:]).T
+        if self.kind == "turn":
+            rotation *= Rotation.from_rotvec(np.stack([0.1 * a, 0.15 * b, 0 * a], axis=1))
+        elif self.kind != "sweep":
+            axis = {"axis": [0, 0, 0.13], "sideways": [0.16, 0, 0]}[self.kind]
+            position = position + rotation.apply(np.multiply.outer(a, axis))
+        return position, rotation
+
+    def pose(self, time):
+        """Positions, shape (n, 3), and rotations: X_world = R X_camera + p, in the frame of the upright camera."""
+        time = np.ravel(time).astype(float)
+        (position, rotation), (shift, turn) = self.smooth(time), self.tremors(time)
+        return position + shift, rotation * Rotation.from_rotvec(turn)
+
+    def velocity(self, time, step=1e-4):
+        """Velocity in m/s and angular velocity in rad/s along the camera's axes, shapes (n, 3)."""
+        time = np.ravel(time).astype(float)
+        (p, before), (q, after) = self.pose(time - step), self.pose(time + step)
+        turning = (before.inv() * after).as_rotvec() / (2 * step)
+        return self.pose(time)[1].inv().apply((q - p) / (2 * step)), turning
+
+
+@dataclass(frozen=True)
+class Faults:
+    """Whatever a telephone does to a film."""
+
+    readout: float = 0.0  # s; row v is exposed at t + (v / h - 1 / 2) readout
+    exposure: float = 0.0  # s
+    blur: float = 0.0  # standard deviation in pixels
+    focus: float = 0.0  # amplitude of a slow change of the focal length, relative
+    focus_step: float = 0.0  # relative step of the focal length in the middle of the film, over about 0.3 s
+    stabilised: float = 0.0  # pixels that the picture wanders against the lens, while the tremor is taken out
+    noise: float = 2.0  # standard deviation in grey values
+    brightness: float = 0.0  # relative amplitude
+    uneven: float = 0.0  # intervals of frames vary by so much, relative, below 1
+    black: tuple = ()  # numbers of black frames
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """All that is true of a film; pixels are those of the upright picture."""
+
+    time: np.ndarray  # of the frames, when the row in the middle is exposed
+    camera: PixelCamera
+    sheets: tuple
+    motion: Motion
+    faults: Faults
+    placed: np.ndarray = field(repr=False)  # (K, 3, 3) from the pixels of the lens to those of the picture, upright
+
+    @property
+    def poses(self):
+        """Poses at the frames' times."""
+        position, rotation = self.motion.pose(self.time)
+        return Poses(self.time, position, rotation.as_matrix())
+
+    def frame(self, time):
+        """Number of the frame nearest in time."""
+        return np.abs(np.subtract.outer(time, self.time)).argmin(axis=-1)
+
+    def lens_pixels(self, frame, pixels):
+        """Pixels without stabilisation or focusing, shape (n, 2)."""
+        ahead = np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)
+        return (np.linalg.inv(self.placed[frame]) @ ahead[..., None])[..., :2, 0]
+
+    def row_time(self, frame, pixels):
+        """Time when pixels of a frame are exposed, shape (n,)."""
+        w, h = self.camera.size
+        u, v = self.lens_pixels(frame, np.asarray(pixels, float)).T
+        part = (w - 1 - u) / w if h > w else v / h  # a film higher than wide is read along its rows, from the right
+        return self.time[frame] + (part - 0.5) * self.faults.readout
+
+    def distance_at(self, time, pixels):
+        """Depth Z in metres of what is seen at times and pixels, shapes (n,) and (n, 2); NaN for the background."""
+        pixels = np.atleast_2d(np.asarray(pixels, float))
+        time = np.broadcast_to(time, len(pixels))
+        position, rotation = self.motion.pose(time)
+        rays = self.camera.image(self.lens_pixels(self.frame(time), pixels))
+        rays, nearest = np.concatenate([rays, np.ones((len(rays), 1))], axis=1), np.zeros(len(rays))
+        for sheet in self.sheets:
+            with np.errstate(all="ignore"):
+                s, t, inverse = (sheet.maps(position, rotation.as_matrix()) @ rays[..., None])[..., 0].T
+                hit = (inverse > 0) & (s >= 0) & (s <= inverse) & (t >= 0) & (t <= inverse)
+            nearest = np.where(hit, np.fmax(nearest, inverse), nearest)
+        return np.divide(1, nearest, out=np.full(len(rays), np.nan), where=nearest > 0)
+
+    def project(self, frame, places):
+        """Pixels of places in a frame, at the times of their rows, shape (n, 2); NaN out of the picture."""
+        time = np.full(len(places), self.time[frame])
+        for _ in range(5):
+            position, rotation = self.motion.pose(time)
+            local = rotation.inv().apply(places - position)
+            seen = self.camera.pixels(local[:, :2] / local[:, 2:])
+            pixels = (np.concatenate([seen, np.ones((len(seen), 1))], axis=1) @ self.placed[frame].T)[:, :2]
+            time = self.row_time(frame, pixels)
+        inside = (
+            (local[:, 2] > 0) & (pixels > -0.5).all(axis=1) & (pixels < np.array(self.camera.size) - 0.5).all(axis=1)
+        )
+        return np.where(inside[:, None], pixels, np.nan)
+
+    def corners(self, frame):
+        """Pixels of the board's corners in a frame, shape (24, 2)."""
+        return self.project(frame, BOARD.points)
+
+
+@njit(cache=True, fastmath=True)
+def paint(grey, near, rays, maps, texture, top, bottom, left, right):
+    """Draw a texture where it is nearer than what is drawn; maps take rays to pixels of the texture, by the row."""
+    h, w = texture.shape
+    for v in range(top, bottom):
+        m = maps[v]
+        for u in range(left, right):
+            a, b = rays[v, u, 0], rays[v, u, 1]
+            inverse = m[2, 0] * a + m[2, 1] * b + m[2, 2]
+            if inverse <= near[v, u]:
+                continue
+            x = (m[0, 0] * a + m[0, 1] * b + m[0, 2]) / inverse
+            y = (m[1, 0] * a + m[1, 1] * b + m[1, 2]) / inverse
+            part = min(min(x, w - x), min(y, h - y)) + 0.5  # of the pixel that the sheet covers
+            if part <= 0:
+                continue
+            x, y = min(max(x - 0.5, 0.0), w - 1.001), min(max(y - 0.5, 0.0), h - 1.001)
+            i, j = int(x), int(y)
+            x, y = x - i, y - j
+            value = (1 - y) * ((1 - x) * texture[j, i] + x * texture[j, i + 1])
+            value += y * ((1 - x) * texture[j + 1, i] + x * texture[j + 1, i + 1])
+            grey[v, u] += min(part, 1.0) * (value - grey[v, u])
+            if part > 0.5:
+                near[v, u] = inverse
+
+
+class Renderer:
+    """Draws pictures in a camera whose rows are exposed at times, with a margin around them."""
+
+    def __init__(self, sheets, camera, margin=0):
+        self.sheets, self.camera, self.margin = sheets, camera, margin
+        w, h = map(int, camera.size)
+        u, v = np.arange(-margin, w + margin), np.arange(-margin, h + margin)
+        coarse = [np.linspace(line[0], line[-1], len(line) // 16 + 6) for line in (u, v)]
+        image = camera.image(np.stack(np.meshgrid(*coarse), axis=-1))  # smooth, so a spline of some is exact enough
+        fine = [RectBivariateSpline(*coarse[::-1], image[..., k])(v, u) for k in (0, 1)]
+        self.rays = np.stack(fine, axis=-1).astype(np.float32)
+
+    def box(self, sheet, position, matrix):
+        """First and last row and column where a sheet may be seen."""
+        h, w = self.rays.shape[:2]
+        local = np.concatenate([(sheet.corners - p) @ r for p, r in zip(position, matrix, strict=True)])
+        if local[:, 2].min() < 0.05:
+            return 0, h, 0, w
+        image = np.clip(local[:, :2] / local[:, 2:], -1.2, 1.2)
+        pixels, slack = self.camera.pixels(image) + self.margin, 3 + 0.02 * w
+        (left, top), (right, bottom) = pixels.min(axis=0) - slack, pixels.max(axis=0) + slack
+        return (*np.clip([top, bottom], 0, h).astype(int), *np.clip([left, right], 0, w).astype(int))
+
+    def picture(self, position, matrix):
+        """Grey values, shape (h, w), where each row has a pose of its own."""
+        h, w = self.rays.shape[:2]
+        grey, near = np.full((h, w), 60, np.float32), np.zeros((h, w), np.float32)
+        few = np.array([0, h // 2, h - 1])
+        flat, others = self.sheets[:1], self.sheets[1:]
+        away = [-np.linalg.norm(sheet.corners.mean(axis=0) - position[h // 2]) for sheet in others]
+        for sheet in (*flat, *[others[k] for k in np.argsort(away, kind="stable")]):
+            top, bottom, left, right = self.box(sheet, position[few], matrix[few])
+            if top >= bottom or left >= right:
+                continue
+            maps = sheet.maps(position, matrix)
+            for start in range(top, bottom, BLOCK):
+                stop = min(start + BLOCK, bottom)
+                texture = sheet.sizes[self.size(sheet, maps, (start + stop) // 2, left, right)]
+                scaled = maps * np.array([*texture.shape[::-1], 1])[:, None]
+                paint(grey, near, self.rays, scaled.astype(np.float32), texture, start, stop, left, right)
+        return grey
+
+    def size(self, sheet, maps, row, left, right):
+        """Number of the texture with about a pixel for a pixel of the picture, in a row."""
+        rays = self.rays[row, left:right:16]
+        s, t, inverse = maps[row] @ np.concatenate([rays, np.ones_like(rays[:, :1])], axis=1).T
+        hit = (inverse > 0) & (s >= 0) & (s <= inverse) & (t >= 0) & (t <= inverse)
+        middle = np.median(inverse[hit]) if hit.any() else 1 / max(0.05, np.linalg.solve(maps[row], [0.5, 0.5, 1])[2])
+        area = abs(np.linalg.det(maps[row])) * sheet.texture.size / np.prod(self.camera.focal) / middle**3
+        return int(np.clip(round(np.log2(max(area, 1)) + 0.3), 0, len(sheet.sizes) - 1))
+
+
+def stored(camera):
+    """Camera of the pictures as they are stored: those higher than wide lie on their side."""
+    if camera.size[1] <= camera.size[0]:
+        return camera
+    k1, k2, p1, p2, *others = [*camera.distortion, *[0.0] * 4][: max(4, len(camera.distortion))]
+    centre = camera.centre[1], camera.size[0] - 1 - camera.centre[0]
+    return PixelCamera(
+        camera.focal[::-1], centre, [int(each) for each in camera.size[::-1]], (k1, k2, -p2, p1, *others)
+    )
+
+
+def placements(time, camera, motion, faults, seed):
+    """Matrices (K, 3, 3) from pixels of the lens to those of the upright picture: focusing and stabilisation."""
+    rng = np.random.default_rng([seed, 4])
+    rate, phase = rng.uniform(1, 4, (3, 3)), rng.uniform(0, 2 * np.pi, (3, 3))
+    wander = np.sin(np.multiply.outer(time, rate) + phase).sum(axis=1) / np.sqrt(1.5) * faults.stabilised
+    zoom = 1 + faults.focus * np.sin(2 * np.pi * time / 5 + phase[0, 0])
+    zoom += faults.focus_step * (1 + np.tanh((time - time.mean()) / 0.08)) / 2
+    turn = motion.tremors(time)[1] * (faults.stabilised > 0)
+    x = wander[:, 0] + camera.focal[0] * turn[:, 1]
+    y = wander[:, 1] - camera.focal[1] * turn[:, 0]
+    angle = turn[:, 2] + 0.0003 * wander[:, 2]
+    cos, sin, zero, one = zoom * np.cos(angle), zoom * np.sin(angle), 0 * zoom, 0 * zoom + 1
+    about = np.moveaxis(np.array([[cos, -sin, x], [sin, cos, y], [zero, zero, one]]), -1, 0)
+    shift = np.array([[1, 0, camera.centre[0]], [0, 1, camera.centre[1]], [0, 0, 1.0]])
+    return shift @ about @ np.linalg.inv(shift)
+
+
+def pictures(truth, seed=0):
+    """Stored pictures of a film, one after the other, as arrays of bytes, shape (h, w)."""
+    faults, camera, rng = truth.faults, stored(truth.camera), np.random.default_rng([seed, 5])
+    (w, h), upright = map(int, camera.size), camera == truth.camera
+    moved = bool(faults.focus or faults.focus_step or faults.stabilised)
+    margin = int(moved * np.ceil(4 * faults.stabilised + 0.03 * w))
+    renderer = Renderer(truth.sheets, camera, margin)
+    delay = (np.arange(-margin, h + margin) / h - 0.5) * faults.readout
+    parts = (np.arange(5) - 2) / 5 * faults.exposure if faults.exposure else [0.0]
+    pool = faults.noise * rng.standard_normal((h + 64, w + 64), dtype=np.float32)
+    lie = np.eye(3) if upright else np.array([[0, 1, 0], [-1, 0, truth.camera.size[0] - 1], [0, 0, 1]])
+    for number, time in enumerate(truth.time):
+        grey = 0
+        for part in parts:
+            position, rotation = truth.motion.pose(time + part + delay)
+            grey = grey + renderer.picture(
+                position, rotation.as_matrix() @ (np.eye(3) if upright else UPRIGHT.T)
+            ) / len(parts)
+        if moved:
+            shift = np.array([[1, 0, -margin], [0, 1, -margin], [0, 0, 1]])
+            placed = lie @ truth.placed[number] @ np.linalg.inv(lie) @ shift
+            grey = cv2.warpAffine(grey, placed[:2], (w, h), flags=cv2.INTER_CUBIC)
+        if faults.blur:
+            grey = cv2.GaussianBlur(grey, (0, 0), faults.blur)
+        grey *= 1 + faults.brightness * np.sin(2 * np.pi * time / 3.7)
+        grey *= number not in faults.black
+        y, x = rng.integers(0, 64, 2)
+        yield np.clip(np.rint(grey + pool[y : y + h, x : x + w]), 0, 255).astype(np.uint8)
+
+
+def write_film(path, sheets, motion, camera, duration, rate=30, faults=None, seed=0):
+    """Write an MP4 file of H.264 and return the truth."""
+    import av
+
+    faults, rng = faults or Faults(), np.random.default_rng([seed, 6])
+    steps = (1 + faults.uneven * rng.uniform(-1, 1, round(duration * rate))) * TICKS / rate
+    ticks = np.round(np.cumsum(steps) - steps[0]).astype(int)
+    time = ticks / TICKS
+    truth = Truth(time, camera, tuple(sheets), motion, faults, placements(time, camera, motion, faults, seed))
+    with av.open(str(path), "w") as file:
+        stream = file.add_stream("libx264", rate=rate, options={"crf": "20", "preset": "veryfast"})
+        stream.width, stream.height = map(int, stored(camera).size)
+        stream.pix_fmt, stream.codec_context.time_base = "yuv420p", Fraction(1, TICKS)
+        if stored(camera) != camera:
+            stream.set_display_rotation(-90)
+        for tick, picture in zip(ticks, pictures(truth, seed), strict=True):
+            frame = av.VideoFrame.from_ndarray(picture, format="gray")
+            frame.pts, frame.time_base = int(tick), Fraction(1, TICKS)
+            file.mux(stream.encode(frame))
+        file.mux(stream.encode())
+    return truth
+
+
+def standard_film(
+    seed,
+    folder,
+    kind="sweep",
+    size=(1280, 720),
+    duration=None,
+    rate=30,
+    boards=1,
+    upside_down=False,
+    tremor=1.0,
+    **faults,
+):
+    """Write the file SEED.mp4 of a film whose camera, path and scene vary with the seed; return its path and truth."""
+    rng = np.random.default_rng([seed, 7])
+    heading = rng.uniform(-0.4, 0.4) + np.pi * upside_down
+    focal, long = rng.uniform(900, 1200) / 1280 * max(size), rng.uniform(12, 18)
+    centre = (np.array(size) - 1) / 2 + rng.uniform(-0.01, 0.01, 2) * max(size)
+    lens = (rng.uniform(-0.05, 0.1), rng.uniform(-0.03, 0.03), *rng.uniform(-0.0005, 0.0005, 2))
+    camera = PixelCamera((focal, focal * rng.uniform(0.998, 1.002)), centre, size, lens)
+    path = Path(folder) / f"{seed}.mp4"
+    sheets, motion = scene(seed, heading, boards, focal / 0.45), Motion(kind, seed, heading, tremor)
+    return path, write_film(path, sheets, motion, camera, duration or long, rate, Faults(**faults), seed)
+
+
+def quick_film(seed, folder, size=(640, 360), duration=5.0, rate=20, **others):
+    """Write a small film as `standard_film` does."""
+    return standard_film(seed, folder, size=size, duration=duration, rate=rate, **others)
