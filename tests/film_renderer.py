@@ -24,8 +24,6 @@ TICKS = 90_000
 """Of the film's clock in a second."""
 UPRIGHT = np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1.0]])
 """From the camera's frame of an upright picture to the frame of the sensor, whose x axis points up."""
-BLOCK = 48
-"""Rows that are drawn with the same size of a texture."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +37,13 @@ class Sheet:
 
     @cached_property
     def sizes(self):
-        """The texture, and smaller ones, each by the square root of 2."""
-        shape, sizes = np.array(self.texture.shape[::-1]), [np.ascontiguousarray(self.texture)]
+        """The texture and smaller ones, each by the square root of 2: all bytes, first bytes, and shapes (n, 2)."""
+        sizes = [self.texture]
         while min(sizes[-1].shape) > 8:
-            small = np.round(shape / 2 ** (len(sizes) / 2)).astype(int)
+            small = np.round(np.array(self.texture.shape[::-1]) / 2 ** (len(sizes) / 2)).astype(int)
             sizes.append(cv2.resize(self.texture, small.tolist(), interpolation=cv2.INTER_AREA))
-        return sizes
+        starts = np.cumsum([0, *[each.size for each in sizes[:-1]]])
+        return np.concatenate([each.ravel() for each in sizes]), starts, np.array([each.shape for each in sizes])
 
     def maps(self, position, matrix):
         """Matrices that take rays (a, b, 1) of cameras to (s, t, 1) / Z, shape (n, 3, 3): s across, t down, Z depth."""
@@ -257,26 +256,36 @@ class Truth:
 
 
 @njit(cache=True, fastmath=True)
-def paint(grey, near, rays, maps, texture, top, bottom, left, right):
-    """Draw a texture where it is nearer than what is drawn; maps take rays to pixels of the texture, by the row."""
-    h, w = texture.shape
+def paint(grey, near, rays, maps, focal, box, texture, starts, shapes):
+    """Draw a sheet in a box where it is nearer than what is drawn; each row of pixels has its map."""
+    top, bottom, left, right = box
     for v in range(top, bottom):
-        m = maps[v]
+        m = maps[v - top]
+        area = m[0, 0] * (m[1, 1] * m[2, 2] - m[1, 2] * m[2, 1]) - m[0, 1] * (m[1, 0] * m[2, 2] - m[1, 2] * m[2, 0])
+        area = abs(area + m[0, 2] * (m[1, 0] * m[2, 1] - m[1, 1] * m[2, 0])) * shapes[0, 0] * shapes[0, 1] / focal**2
+        start, h, w, used = 0, 0, 0, left - 16
         for u in range(left, right):
-            a, b = rays[v, u, 0], rays[v, u, 1]
+            a, b = rays[v, u]
             inverse = m[2, 0] * a + m[2, 1] * b + m[2, 2]
             if inverse <= near[v, u]:
                 continue
-            x = (m[0, 0] * a + m[0, 1] * b + m[0, 2]) / inverse
-            y = (m[1, 0] * a + m[1, 1] * b + m[1, 2]) / inverse
+            s = (m[0, 0] * a + m[0, 1] * b + m[0, 2]) / inverse
+            t = (m[1, 0] * a + m[1, 1] * b + m[1, 2]) / inverse
+            if min(min(s, 1 - s), min(t, 1 - t)) < -0.1:
+                continue
+            if u >= used + 16:  # the size that has about one pixel for each of the picture's
+                used, k = u, int(np.log2(max(area / inverse**3, 1.0)) + 0.8)
+                k = min(k, len(starts) - 1)
+                start, h, w = starts[k], shapes[k, 0], shapes[k, 1]
+            x, y = s * w, t * h
             part = min(min(x, w - x), min(y, h - y)) + 0.5  # of the pixel that the sheet covers
             if part <= 0:
                 continue
             x, y = min(max(x - 0.5, 0.0), w - 1.001), min(max(y - 0.5, 0.0), h - 1.001)
             i, j = int(x), int(y)
-            x, y = x - i, y - j
-            value = (1 - y) * ((1 - x) * texture[j, i] + x * texture[j, i + 1])
-            value += y * ((1 - x) * texture[j + 1, i] + x * texture[j + 1, i + 1])
+            x, y, at = x - i, y - j, start + j * w + i
+            value = (1 - y) * ((1 - x) * texture[at] + x * texture[at + 1])
+            value += y * ((1 - x) * texture[at + w] + x * texture[at + w + 1])
             grey[v, u] += min(part, 1.0) * (value - grey[v, u])
             if part > 0.5:
                 near[v, u] = inverse
@@ -303,35 +312,20 @@ class Renderer:
         image = np.clip(local[:, :2] / local[:, 2:], -1.2, 1.2)
         pixels, slack = self.camera.pixels(image) + self.margin, 3 + 0.02 * w
         (left, top), (right, bottom) = pixels.min(axis=0) - slack, pixels.max(axis=0) + slack
-        return (*np.clip([top, bottom], 0, h).astype(int), *np.clip([left, right], 0, w).astype(int))
+        return (*np.clip([top, bottom], 0, h).astype(int).tolist(), *np.clip([left, right], 0, w).astype(int).tolist())
 
     def picture(self, position, matrix):
         """Grey values, shape (h, w), where each row has a pose of its own."""
         h, w = self.rays.shape[:2]
         grey, near = np.full((h, w), 60, np.float32), np.zeros((h, w), np.float32)
-        few = np.array([0, h // 2, h - 1])
-        flat, others = self.sheets[:1], self.sheets[1:]
-        away = [-np.linalg.norm(sheet.corners.mean(axis=0) - position[h // 2]) for sheet in others]
-        for sheet in (*flat, *[others[k] for k in np.argsort(away, kind="stable")]):
-            top, bottom, left, right = self.box(sheet, position[few], matrix[few])
-            if top >= bottom or left >= right:
-                continue
-            maps = sheet.maps(position, matrix)
-            for start in range(top, bottom, BLOCK):
-                stop = min(start + BLOCK, bottom)
-                texture = sheet.sizes[self.size(sheet, maps, (start + stop) // 2, left, right)]
-                scaled = maps * np.array([*texture.shape[::-1], 1])[:, None]
-                paint(grey, near, self.rays, scaled.astype(np.float32), texture, start, stop, left, right)
+        away = [-np.linalg.norm(sheet.corners.mean(axis=0) - position[h // 2]) for sheet in self.sheets[1:]]
+        for number in (0, *1 + np.argsort(away)):  # the table, then from far to near
+            sheet = self.sheets[number]
+            box = top, bottom, left, right = self.box(sheet, position[:: h // 2], matrix[:: h // 2])
+            if top < bottom and left < right:
+                maps = sheet.maps(position[top:bottom], matrix[top:bottom]).astype(np.float32)
+                paint(grey, near, self.rays, maps, self.camera.focal[0], box, *sheet.sizes)
         return grey
-
-    def size(self, sheet, maps, row, left, right):
-        """Number of the texture with about a pixel for a pixel of the picture, in a row."""
-        rays = self.rays[row, left:right:16]
-        s, t, inverse = maps[row] @ np.concatenate([rays, np.ones_like(rays[:, :1])], axis=1).T
-        hit = (inverse > 0) & (s >= 0) & (s <= inverse) & (t >= 0) & (t <= inverse)
-        middle = np.median(inverse[hit]) if hit.any() else 1 / max(0.05, np.linalg.solve(maps[row], [0.5, 0.5, 1])[2])
-        area = abs(np.linalg.det(maps[row])) * sheet.texture.size / np.prod(self.camera.focal) / middle**3
-        return int(np.clip(round(np.log2(max(area, 1)) + 0.3), 0, len(sheet.sizes) - 1))
 
 
 def stored(camera):
