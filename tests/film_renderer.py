@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 
+import av
 import cv2
 import numpy as np
 from numba import njit
@@ -57,61 +58,64 @@ class Sheet:
         return self.corner + np.array([0 * self.across, self.across, self.across + self.down, self.down])
 
 
-def card(rng, corner, across, down, density, plain=False):
+def _unit(vectors):
+    """Vectors of length 1."""
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def _moved(matrix, pixels):
+    """Pixels moved by matrices of shape (3, 3) or (n, 3, 3)."""
+    return (matrix[..., :2, :2] @ pixels[..., None])[..., 0] + matrix[..., :2, 2]
+
+
+def card(rng, corner, across, down, density, shade=1.0, plain=False):
     """Sheet with a random picture of so many pixels a metre: strong corners of many sizes, or a table's faint grain."""
-    across, down = np.asarray(across, float), np.asarray(down, float)
     w, h = (max(16, round(np.linalg.norm(edge) * density)) for edge in (across, down))
     grey = np.full((h, w), rng.uniform(110, 190), np.float32)
-    for cells in (4, 16, 64) if plain else (3,):  # the last is stretched along the grain
+    for cells in (4, 16, 64) if plain else (3,):  # longer along the grain
         coarse = rng.normal(size=(cells * (1 + 3 * plain), cells)).astype(np.float32)
         grey += 7 * cv2.resize(coarse, (w, h), interpolation=cv2.INTER_CUBIC)
-    for size, number in ((0.004, 400), (0.002, 900)) if plain else ((0.03, 25), (0.012, 60), (0.005, 120)):
-        for _ in range(number if plain else round(number * w * h / density**2 / 0.02)):
-            around = rng.uniform(0, 2 * np.pi) + np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 6)))
-            ring = np.stack([np.cos(around), np.sin(around)], 1) * rng.uniform(0.5, 1.2) * size * density
+    shapes = ((0.004, 300), (0.002, 700)) if plain else ((0.03, 1200), (0.012, 3000), (0.005, 6000))  # number in a m^2
+    for size, number in shapes:
+        for _ in range(round(number * w * h / density**2)):
+            around = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 6)))
+            ring = np.stack([np.cos(around), np.sin(around)], axis=1) * rng.uniform(0.5, 1.2) * size * density
             points = np.round(ring + rng.uniform(0, [w, h])).astype(np.int32)
-            shade = rng.uniform(80, 200) if plain else rng.uniform(15, 245)
-            cv2.fillPoly(grey, [points], shade, cv2.LINE_8)
-    return Sheet(np.asarray(corner, float), across, down, np.clip(grey, 0, 255).astype(np.uint8))
+            cv2.fillPoly(grey, [points], rng.uniform(80, 200) if plain else rng.uniform(15, 245))
+    return Sheet(corner, across, down, np.clip(shade * grey, 0, 255).astype(np.uint8))
 
 
-def paper(density, place=(0.0, 0.0), turn=0.0):
-    """The board on its paper, with its upper left corner at a place of the table, turned."""
+def paper(density, middle=CENTRE, turn=0.0):
+    """Sheet with the board at a place of the table, turned, and a margin of white paper."""
     pixels = 4 * round(BOARD.square * density / 4)
-    edge = pixels // 5
-    texture = cv2.copyMakeBorder(BOARD.picture(pixels), *[edge] * 4, cv2.BORDER_CONSTANT, value=255)
-    texture = (25 + 0.82 * texture).astype(np.uint8)  # ink and paper
-    metres = BOARD.square / pixels
-    axes = Rotation.from_rotvec([0, 0, turn]).as_matrix()
-    across, down = axes[:, 0] * texture.shape[1] * metres, axes[:, 1] * texture.shape[0] * metres
-    return Sheet(np.array([*place, 0.0]) - edge * metres * (axes[:, 0] + axes[:, 1]), across, down, texture)
+    texture = cv2.copyMakeBorder(BOARD.picture(pixels), *[pixels // 5] * 4, cv2.BORDER_CONSTANT, value=255)
+    texture = (25 + 0.82 * texture).astype(np.uint8)  # ink is not black, nor paper as white as can be
+    x, y, _ = Rotation.from_rotvec([0, 0, turn]).as_matrix().T * BOARD.square / pixels
+    across, down = x * texture.shape[1], y * texture.shape[0]
+    return Sheet(middle - (across + down) / 2, across, down, texture)
 
 
 def scene(seed, heading=0.0, boards=1, density=2500):
     """Sheets: the table, boards on it, and boxes and cards around, high ones away from who stands at the heading."""
     rng = np.random.default_rng([seed, 1])
-    turned = Rotation.from_rotvec([0, 0, heading])
-    side, towards, up = turned.as_matrix().T * [[1], [1], [-1]]
-    table = card(
-        rng, CENTRE - 1.2 * side - 1.1 * towards - 0.001 * up, 2.4 * side, 1.8 * towards, min(density / 2, 2500), True
-    )
-    sheets = [table, *[paper(density), paper(density, (-0.36, 0.02), 0.15)][:boards]]
-    spots = np.array([[-0.31, 0.1], [-0.28, -0.2], [-0.03, -0.24], [0.2, -0.26], [0.33, -0.02], [0.31, 0.2]])
-    for number, spot in enumerate(spots):
-        turn = turned * Rotation.from_rotvec([0, 0, rng.uniform(-0.5, 0.5)])
-        x, y, _ = turn.as_matrix().T
-        foot = CENTRE + side * spot[0] + towards * spot[1] + turned.apply([*rng.uniform(-0.02, 0.02, 2), 0])
-        foot += 0.08 * np.sign(spot[0]) * side * (boards > 1 and abs(spot[0]) > 0.25)
-        w, d = rng.uniform(0.09, 0.15, 2)
-        h = rng.uniform(0.02, 0.09) if spot[1] > 0 else rng.uniform(0.06, 0.25)
-        if number in (2, 4):  # a card that leans back
-            corner, lean = foot - x * w / 2, up * h - y * rng.uniform(0.02, 0.08)
-            sheets.append(card(rng, corner + lean, x * w, -lean, density))
+    side, towards, up = Rotation.from_rotvec([0, 0, heading]).as_matrix().T * [[1], [1], [-1]]
+    corner = CENTRE - 1.2 * side - 1.1 * towards - 0.001 * up  # just below the paper
+    sheets = [card(rng, corner, 2.4 * side, 1.8 * towards, min(density / 2, 2500), plain=True)]
+    sheets += [paper(density), paper(density, CENTRE - 0.33 * side, heading + 0.1)][:boards]
+    spots = np.array([[-0.07, -0.19], [0.23, -0.07], [0.09, -0.21], [0.25, 0.11], [-0.25, -0.14], [-0.24, 0.07]])
+    for number, spot in enumerate(spots[: 4 if boards > 1 else 6]):
+        x, y, _ = Rotation.from_rotvec([0, 0, heading + rng.uniform(-0.5, 0.5)]).as_matrix().T
+        foot = CENTRE + np.array([*spot + rng.uniform(-0.02, 0.02, 2)]) @ [side, towards]
+        w, d = rng.uniform(0.07, 0.11, 2)
+        h = rng.uniform(0.02, 0.08) if spot[1] > 0 else rng.uniform(0.06, 0.22)
+        if number < 2:  # a card that leans back
+            lean = up * h - y * rng.uniform(0.02, 0.08)
+            sheets.append(card(rng, foot - x * w / 2 + lean, x * w, -lean, density))
             continue
         corner = foot - x * w / 2 - y * d / 2 + up * h
         sheets.append(card(rng, corner, x * w, y * d, density))
-        for start, edge in ((0 * x, x * w), (y * d, x * w), (0 * x, y * d), (x * w, y * d)):
-            sheets.append(card(rng, corner + start, edge, -up * h, density))
+        for start, edge, shade in ((0, x * w, 0.6), (y * d, x * w, 0.85), (0, y * d, 0.7), (x * w, y * d, 0.9)):
+            sheets.append(card(rng, corner + start, edge, -up * h, density, shade))
     return tuple(sheets)
 
 
@@ -134,30 +138,22 @@ class Motion:
     def smooth(self, time):
         """Positions, shape (n, 3), and rotations without the tremor."""
         rng = np.random.default_rng([self.seed, 3])
-        phase, pace = rng.uniform(0, 2 * np.pi, 8), rng.uniform(0.85, 1.15, 8)
-        far = rng.uniform(0.55, 0.65)
-        t = np.zeros_like(time) if self.kind != "sweep" else time
-        side, slope, near, x, y, roll = np.sin(
-            np.multiply.outer(t, pace[:6] * [0.5, 0.37, 0.3, 0.6, 0.7, 0.4]) + phase[:6]
-        ).T
-        if self.kind != "sweep":
-            side, slope, near = 0.3 * side, 0.3 * slope, 0 * near
+        pace, phase, far = rng.uniform(0.85, 1.15, 8), rng.uniform(0, 2 * np.pi, 8), rng.uniform(0.57, 0.65)
+        rate, swept = pace * [0.5, 0.37, 0.3, 0.6, 0.7, 0.4, 1, 1], self.kind == "sweep"
+        side, slope, near, x, y, roll = np.sin(np.multiply.outer(swept * time, rate) + phase).T[:6]
+        a, b = np.sin(np.multiply.outer(time, rate[6:]) + phase[6:]).T
+        span = 1 if swept else 0.3
+        away = np.stack([span * 0.55 * side, 0.42 + span * 0.3 * slope, near * 0 - 1], axis=1)
+        position = _unit(away) * (far + swept * 0.06 * near)[:, None]
+        z = _unit(0.03 * np.stack([x, y, 0 * x], axis=1) - position)
+        right = _unit(np.cross([0, 1.0, 0], z))
         turned = Rotation.from_rotvec([0, 0, self.heading])
-        away = np.stack([0.55 * side, 0.42 + 0.3 * slope, -np.ones_like(side)], axis=1)
-        position = (far + 0.06 * near)[:, None] * away / np.linalg.norm(away, axis=1, keepdims=True)
-        ahead = 0.03 * np.stack([x, y, 0 * x], axis=1) - position
-        z = ahead / np.linalg.norm(ahead, axis=1, keepdims=True)
-        right = np.cross([0, 1.0, 0], z)
-        right /= np.linalg.norm(right, axis=1, keepdims=True)
         rotation = turned * Rotation.from_matrix(np.stack([right, np.cross(z, right), z], axis=2))
         rotation *= Rotation.from_rotvec(np.multiply.outer(0.12 * roll, [0, 0, 1.0]))
-        position, (a, b) = CENTRE + turned.apply(position), np.sin(np.multiply.outer(time, pace[6:]) + phase[6:]).T
         if self.kind == "turn":
             rotation *= Rotation.from_rotvec(np.stack([0.1 * a, 0.15 * b, 0 * a], axis=1))
-        elif self.kind != "sweep":
-            axis = {"axis": [0, 0, 0.13], "sideways": [0.16, 0, 0]}[self.kind]
-            position = position + rotation.apply(np.multiply.outer(a, axis))
-        return position, rotation
+        shift = np.multiply.outer(a, {"axis": [0, 0, 0.13], "sideways": [0.16, 0, 0]}.get(self.kind, [0, 0, 0]))
+        return CENTRE + turned.apply(position) + rotation.apply(shift), rotation
 
     def pose(self, time):
         """Positions, shape (n, 3), and rotations: X_world = R X_camera + p, in the frame of the upright camera."""
@@ -212,19 +208,17 @@ class Truth:
 
     def lens_pixels(self, frame, pixels):
         """Pixels without stabilisation or focusing, shape (n, 2)."""
-        ahead = np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)
-        return (np.linalg.inv(self.placed[frame]) @ ahead[..., None])[..., :2, 0]
+        return _moved(np.linalg.inv(self.placed[frame]), np.asarray(pixels, float))
 
     def row_time(self, frame, pixels):
         """Time when pixels of a frame are exposed, shape (n,)."""
         w, h = self.camera.size
-        u, v = self.lens_pixels(frame, np.asarray(pixels, float)).T
+        u, v = self.lens_pixels(frame, pixels).T
         part = (w - 1 - u) / w if h > w else v / h  # a film higher than wide is read along its rows, from the right
         return self.time[frame] + (part - 0.5) * self.faults.readout
 
     def distance_at(self, time, pixels):
         """Depth Z in metres of what is seen at times and pixels, shapes (n,) and (n, 2); NaN for the background."""
-        pixels = np.atleast_2d(np.asarray(pixels, float))
         time = np.broadcast_to(time, len(pixels))
         position, rotation = self.motion.pose(time)
         rays = self.camera.image(self.lens_pixels(self.frame(time), pixels))
@@ -242,12 +236,9 @@ class Truth:
         for _ in range(5):
             position, rotation = self.motion.pose(time)
             local = rotation.inv().apply(places - position)
-            seen = self.camera.pixels(local[:, :2] / local[:, 2:])
-            pixels = (np.concatenate([seen, np.ones((len(seen), 1))], axis=1) @ self.placed[frame].T)[:, :2]
+            pixels = _moved(self.placed[frame], self.camera.pixels(local[:, :2] / local[:, 2:]))
             time = self.row_time(frame, pixels)
-        inside = (
-            (local[:, 2] > 0) & (pixels > -0.5).all(axis=1) & (pixels < np.array(self.camera.size) - 0.5).all(axis=1)
-        )
+        inside = ((pixels > -0.5) & (pixels < np.array(self.camera.size) - 0.5)).all(axis=1) & (local[:, 2] > 0)
         return np.where(inside[:, None], pixels, np.nan)
 
     def corners(self, frame):
@@ -334,9 +325,8 @@ def stored(camera):
         return camera
     k1, k2, p1, p2, *others = [*camera.distortion, *[0.0] * 4][: max(4, len(camera.distortion))]
     centre = camera.centre[1], camera.size[0] - 1 - camera.centre[0]
-    return PixelCamera(
-        camera.focal[::-1], centre, [int(each) for each in camera.size[::-1]], (k1, k2, -p2, p1, *others)
-    )
+    size = [int(each) for each in camera.size[::-1]]
+    return PixelCamera(camera.focal[::-1], centre, size, (k1, k2, -p2, p1, *others))
 
 
 def placements(time, camera, motion, faults, seed):
@@ -347,13 +337,13 @@ def placements(time, camera, motion, faults, seed):
     zoom = 1 + faults.focus * np.sin(2 * np.pi * time / 5 + phase[0, 0])
     zoom += faults.focus_step * (1 + np.tanh((time - time.mean()) / 0.08)) / 2
     turn = motion.tremors(time)[1] * (faults.stabilised > 0)
-    x = wander[:, 0] + camera.focal[0] * turn[:, 1]
-    y = wander[:, 1] - camera.focal[1] * turn[:, 0]
+    shift = wander[:, :2] + turn[:, 1::-1] * [1, -1] * camera.focal
     angle = turn[:, 2] + 0.0003 * wander[:, 2]
-    cos, sin, zero, one = zoom * np.cos(angle), zoom * np.sin(angle), 0 * zoom, 0 * zoom + 1
-    about = np.moveaxis(np.array([[cos, -sin, x], [sin, cos, y], [zero, zero, one]]), -1, 0)
-    shift = np.array([[1, 0, camera.centre[0]], [0, 1, camera.centre[1]], [0, 0, 1.0]])
-    return shift @ about @ np.linalg.inv(shift)
+    placed = np.tile(np.eye(3), (len(time), 1, 1))
+    placed[:, :2, :2] = Rotation.from_rotvec(np.multiply.outer(angle, [0, 0, 1])).as_matrix()[:, :2, :2]
+    placed[:, :2, :2] *= zoom[:, None, None]
+    placed[:, :2, 2] = shift + camera.centre - placed[:, :2, :2] @ camera.centre
+    return placed
 
 
 def pictures(truth, seed=0):
@@ -367,13 +357,10 @@ def pictures(truth, seed=0):
     parts = (np.arange(5) - 2) / 5 * faults.exposure if faults.exposure else [0.0]
     pool = faults.noise * rng.standard_normal((h + 64, w + 64), dtype=np.float32)
     lie = np.eye(3) if upright else np.array([[0, 1, 0], [-1, 0, truth.camera.size[0] - 1], [0, 0, 1]])
+    to_upright = np.eye(3) if upright else UPRIGHT.T
     for number, time in enumerate(truth.time):
-        grey = 0
-        for part in parts:
-            position, rotation = truth.motion.pose(time + part + delay)
-            grey = grey + renderer.picture(
-                position, rotation.as_matrix() @ (np.eye(3) if upright else UPRIGHT.T)
-            ) / len(parts)
+        poses = (truth.motion.pose(time + part + delay) for part in parts)
+        grey = sum(renderer.picture(p, r.as_matrix() @ to_upright) for p, r in poses) / len(parts)
         if moved:
             shift = np.array([[1, 0, -margin], [0, 1, -margin], [0, 0, 1]])
             placed = lie @ truth.placed[number] @ np.linalg.inv(lie) @ shift
@@ -388,8 +375,6 @@ def pictures(truth, seed=0):
 
 def write_film(path, sheets, motion, camera, duration, rate=30, faults=None, seed=0):
     """Write an MP4 file of H.264 and return the truth."""
-    import av
-
     faults, rng = faults or Faults(), np.random.default_rng([seed, 6])
     steps = (1 + faults.uneven * rng.uniform(-1, 1, round(duration * rate))) * TICKS / rate
     ticks = np.round(np.cumsum(steps) - steps[0]).astype(int)
