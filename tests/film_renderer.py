@@ -139,7 +139,7 @@ class Motion:
         """Positions, shape (n, 3), and rotations without the tremor."""
         rng = np.random.default_rng([self.seed, 3])
         pace, phase, far = rng.uniform(0.85, 1.15, 8), rng.uniform(0, 2 * np.pi, 8), rng.uniform(0.57, 0.65)
-        rate, swept = pace * [0.5, 0.37, 0.3, 0.6, 0.7, 0.4, 1, 1], self.kind == "sweep"
+        rate, swept = pace * [0.6, 0.45, 0.3, 0.6, 0.7, 0.4, 1, 1], self.kind == "sweep"
         side, slope, near, x, y, roll = np.sin(np.multiply.outer(swept * time, rate) + phase).T[:6]
         a, b = np.sin(np.multiply.outer(time, rate[6:]) + phase[6:]).T
         span = 1 if swept else 0.3
