@@ -6,7 +6,7 @@ import av
 import cv2
 import numpy as np
 import pytest
-from film_renderer import BOARD, Faults, Motion, Truth, paper, pictures, placements, quick_film, scene
+from film_renderer import BOARD, Faults, Motion, Truth, paper, pictures, placements, quick_film, scene, stored
 
 from percept_obs import PixelCamera
 
@@ -31,6 +31,12 @@ def test_rays_meet_the_board_where_its_corners_are(size):
     assert truth.distance_at(time, truth.corners(2)) == pytest.approx(expected, rel=1e-9)
     assert np.ptp(time) > 0.005
     assert np.isnan(truth.distance_at(2.0, np.zeros((1, 2)))).all()
+
+
+def test_camera_of_an_upright_picture_turns_with_it():
+    camera, image = truth_of((), (360, 640)).camera, np.array([[0.2, 0.1], [-0.1, 0.3]])
+    u, v = camera.pixels(image).T
+    assert stored(camera).pixels(image[:, ::-1] * [1, -1]) == pytest.approx(np.stack([v, 359 - u], axis=1))
 
 
 @pytest.mark.slow
@@ -66,7 +72,7 @@ def test_board_is_found_in_a_film_where_the_truth_says(tmp_path, size, faults):
         if number == 4:
             assert grey.mean() < 10
             continue
-        corners, pixels = BOARD.detect(grey)
+        corners, pixels, *_ = BOARD.detect(grey)
         found.append(pixels - truth.corners(number)[corners])
         unshuttered.append(pixels - still.corners(number)[corners])
     found, unshuttered = np.concatenate(found), np.concatenate(unshuttered)
