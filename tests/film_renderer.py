@@ -413,7 +413,7 @@ def standard_film(
     focal, long = rng.uniform(900, 1200) / 1280 * max(size), rng.uniform(12, 18)
     centre = (np.array(size) - 1) / 2 + rng.uniform(-0.01, 0.01, 2) * max(size)
     lens = (rng.uniform(-0.05, 0.1), rng.uniform(-0.03, 0.03), *rng.uniform(-0.0005, 0.0005, 2))
-    camera = PixelCamera((focal, focal * rng.uniform(0.998, 1.002)), centre, size, lens)
+    camera = PixelCamera((focal, focal), centre, size, lens)  # a telephone's pixels are square
     path = Path(folder) / f"{seed}.mp4"
     sheets, motion = scene(seed, heading, boards, focal / 0.45), Motion(kind, seed, heading, tremor)
     return path, write_film(path, sheets, motion, camera, duration or long, rate, Faults(**faults), seed)
