@@ -83,17 +83,17 @@ class Recording:
         gains and variances are numbers in it.  So nothing relative changes if all lengths and the unit are written in
         millimetres.  Without effect on several points, whose equations are linear.
 
-    Warns
-    -----
-    Unlikely
-        If the samples look like pixels, or a sampled motion has a hole while it is needed.
-
     Raises
     ------
     BehindCamera
         If a point that is seen is not in front of the camera by its truth.
     ValueError
         If shapes do not fit, times do not increase, or values are not finite where they must be.
+
+    Warns
+    -----
+    Unlikely
+        If the samples look like pixels, or a sampled motion has a hole while it is needed.
 
     See Also
     --------
