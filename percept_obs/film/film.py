@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 TRIANGULATION = "triangulation"
 """Name of the distance that the whole film tells of a point at rest."""
 
+ALIKE = 1.0
+"""Seconds in which the errors of corners stay alike, for they come of blur, compression and the lens."""
+
 BOARD = "board"
 """Name of the distance of a corner of the board."""
 
@@ -113,12 +116,14 @@ class Film(Footage):
     def _noise(self) -> dict[str, float]:
         """Gains of the filter.
 
-        Velocities of poses integrate to the poses again, so that errors of these count like errors of the image.
+        Velocities of poses integrate to the poses again, so that errors of these count like errors of the image.  All
+        change slowly, so that the samples of `ALIKE` count as one.
         """
         variance = float(np.median([each.noise_variance for each in self if each.noise_variance is not None]))
         if self.seen is not None:
             spread = np.median(np.diagonal(self.seen.covariance, axis1=1, axis2=2), axis=0)
             variance += spread[:3].mean() + spread[3:].mean() / self.depth**2
+        variance *= max(1.0, ALIKE / float(np.median(np.diff(self.path.time))))
         return {"noise_variance": variance, "hidden_variance": (1 / self.depth) ** 2}
 
     @cached_property

@@ -41,8 +41,8 @@ class PixelCamera:
     size : pair of ints, optional
         Width and height of the image in pixels; an image without borders when left out.
     distortion : sequence of floats, optional
-        k1, k2, p1, p2, then k3, then k4, k5, k6 of OpenCV's model, as its calibration gives them; four, five or eight
-        numbers, or none for images that are rectified.
+        Numbers k1, k2, p1, p2, then k3, then k4, k5, k6 of OpenCV's model, as its calibration gives them: four, five,
+        eight, or none for images that are rectified.
 
     Raises
     ------
