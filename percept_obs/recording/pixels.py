@@ -79,7 +79,7 @@ class PixelCamera:
             values = np.asarray(getattr(self, name), dtype=float)
             if values.shape != (2,) or not ((values > least) & np.isfinite(values)).all():
                 raise ValueError(f"{name} is {getattr(self, name)!r}; it must be two {kind} numbers of pixels")
-            vars(self)[name] = tuple(values.tolist())
+            vars(self)[name] = tuple(map(int, values) if name == "size" else values.tolist())
         lens = np.asarray(self.distortion, dtype=float)
         if lens.size not in LENS_COUNTS or not np.isfinite(lens).all():
             raise ValueError(
