@@ -89,7 +89,7 @@ def test_a_drawn_ball_is_where_the_point_is_seen_and_looms(film, tmp_path):
 
 def test_a_lab_takes_frames_of_its_own_recordings_only(film):
     drawn = render(film, count=3, size=20)
-    (shown,) = observer_lab(film, frames=drawn).frames.values()
+    (shown,) = observer_lab(film, frames=drawn).frames
     assert shown["time"] == drawn.time.tolist()
     with pytest.raises(ValueError, match="which is no recording of this lab"):
         observer_lab(frames=drawn)
