@@ -205,6 +205,6 @@ def _recordings(
             path.motion,
             truth=None if known is None else surface.project(local[BOARD])[first:],
             noise_variance=place.spread**2,
-            distances={BOARD: np.full(len(part) - first, np.nan), **distances},
+            distances={**distances, BOARD: distances.get(BOARD, np.full(len(part) - first, np.nan))},
             source=name if len(parts) == 1 else f"{name}, from {time[part[0]]:.1f} s",
         )
