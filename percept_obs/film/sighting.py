@@ -16,7 +16,7 @@ from percept_obs.film.board import Board
 from percept_obs.film.video import Video
 from percept_obs.validation import write_whole
 
-VERSION = 1
+VERSION = 2
 """Number of the format of files in the cache."""
 
 WIDEST = 1280
