@@ -1,7 +1,7 @@
 """Films of 10 to 20 s, rendered and read: errors of poses and distances, and faults by name.
 
-`python tests/film_study.py [SEEDS [FAULT...]]` prints a line a film, and a table at the end.  Faults are clean, shutter,
-blur, soft, focus, step and stabilised.
+`python tests/film_study.py [SEEDS [FAULT...]]` prints a line a film, and a table at the end.
+The faults are the keys of FAULTS.
 """
 
 import sys
