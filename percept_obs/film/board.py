@@ -77,7 +77,9 @@ class Board:
     @property
     def name(self) -> str:
         """Name that is printed on it."""
-        return f"{self.columns} x {self.rows} squares of {1000 * self.square:g} mm, markers of {1000 * self.marker:g} mm"
+        return (
+            f"{self.columns} x {self.rows} squares of {1000 * self.square:g} mm, markers of {1000 * self.marker:g} mm"
+        )
 
     @property
     def size(self) -> tuple[float, float]:
