@@ -119,7 +119,7 @@ def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_pa
     page = browser_page
     cells = [
         OPEN.format(arguments=""),
-        "from percept_obs.labs import structure_lab\nstructure_lab(duration=3.0, face='workbench')",
+        "import percept_obs.labs as labs\nlabs.structure_lab(duration=3, period=0.01, step=0.01, face='workbench')",
         "from percept_obs.labs import points_lab\npoints_lab(duration=8.0)",  # one opens with its first screen
         "other = observer_lab(outputs=['y1'], face='workbench')\nother",
     ]
