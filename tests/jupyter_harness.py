@@ -317,7 +317,7 @@ def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
     if importlib.util.find_spec("jupyterlab") is None:
         from conftest import missing  # only here, for notebooks' kernels import this module, too
 
-        missing("jupyterlab", "JupyterLab is missing; get it with: python -m pip install 'percept-obs[lab]'.")
+        missing("jupyterlab", 'JupyterLab is missing; get it with: python -m pip install "percept-obs[lab]".')
     for name, text in SETTINGS.items():
         file = home / f"settings/@jupyterlab/{name}.jupyterlab-settings"
         file.parent.mkdir(parents=True)

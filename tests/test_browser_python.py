@@ -29,8 +29,9 @@ PURE_AS_WELL = {"psygnal", "wcwidth"}
 
 
 @pytest.mark.slow
-def test_a_course_runs_without_threads_processes_and_extras(tmp_path):
-    command = [sys.executable, HERE / "without_threads.py", tmp_path]
+@pytest.mark.parametrize("extra", [[], ["data"]], ids=["plain", "data"])
+def test_a_course_runs_without_threads_processes_and_other_extras(tmp_path, extra):
+    command = [sys.executable, HERE / "without_threads.py", tmp_path, *extra]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stderr
     assert {path.name for path in tmp_path.iterdir()} == {
@@ -43,7 +44,8 @@ def is_pure(name):
 
 
 def test_every_package_that_is_required_is_pure_or_built_for_the_browser():
-    found = {name.lower(): wanted for name, wanted in required().items()}
+    found = {name.lower(): wanted for name, wanted in required(extra="data").items()}
+    assert not {"pandas", "pyyaml"} & set(map(str.lower, required())), "a plain install has grown"
     assert {"numpy", "sympy", "anywidget", "ipython", "traitlets"} <= set(found)
     assert {name.lower() for name in found if not is_pure(name)} <= {*BUILT_FOR_PYODIDE, *PURE_AS_WELL}
     assert not {"numba", "psutil", "pyzmq", "tornado", "jupyterlab"} & set(found)

@@ -255,7 +255,7 @@ def test_what_may_be_wider_than_the_page_is_scrolled_by_keys(wide):
 
 
 def test_a_formula_is_written_for_the_browser():
-    pytest.importorskip("latex2mathml", reason="get it with: python -m pip install 'percept-obs[site]'")
+    pytest.importorskip("latex2mathml", reason='get it with: python -m pip install "percept-obs[site]"')
     assert mathml(r"$\displaystyle \frac{1}{y_3}$", "block").startswith("<math")
 
 
@@ -264,5 +264,5 @@ def test_what_is_missing_is_named_with_the_command_that_gets_it(monkeypatch, cap
         "percept_obs.validation.environment.find_spec", lambda module: None if module == "furo" else object()
     )
     assert cli.main(["site", str(tmp_path / "new")]) == 1
-    assert "furo is missing; get it with: python -m pip install 'percept-obs[site]'" in capsys.readouterr().err
+    assert 'furo is missing; get it with: python -m pip install "percept-obs[site]"' in capsys.readouterr().err
     assert not Path(tmp_path / "new").exists()
