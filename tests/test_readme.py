@@ -7,7 +7,6 @@ from itertools import pairwise
 import pytest
 from PIL import Image, ImageChops
 from readme import (
-    CITATION,
     FIGURES,
     FRAMES,
     GALLERY,
@@ -142,8 +141,3 @@ def test_the_link_to_binder_opens_what_binder_copies(tmp_path, monkeypatch):
     assert cli.main(command[1].split()) == 0
     linked = re.search(r"mybinder\.org\S*urlpath=lab/tree/([^)\s]*)", MADE[README](TEXT, ADDRESS))
     assert (tmp_path / linked[1]).exists()
-
-
-def test_the_citation_names_the_version_of_the_package():
-    version = re.search(r"^version: (.*)$", CITATION.read_text("utf-8"), re.MULTILINE)
-    assert version[1] == tomllib.loads(PROJECT_TEXT)["project"]["version"]
