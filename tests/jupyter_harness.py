@@ -459,7 +459,7 @@ def wait_until(holds: Callable[[], object], what: str, patience: float = 60) -> 
 def is_up(address: str, process: subprocess.Popen, log: Path) -> bool:
     """Return True if a server answers at an address."""
     if process.poll() is not None:
-        raise RuntimeError(f"it did not start:\n{log.read_text()}")
+        raise RuntimeError(f"it did not start:\n{log.read_text('utf-8')}")
     try:
         with urllib.request.urlopen(address, timeout=5):
             return True

@@ -56,6 +56,6 @@ def test_every_package_that_is_required_is_pure_or_built_for_the_browser():
 def test_the_wheel_has_nothing_compiled():
     files = [path for path in (HERE.parent / "percept_obs").rglob("*") if "node_modules" not in path.parts]
     assert not [path for path in files if path.suffix in (".so", ".pyd", ".dll", ".c", ".pyx")]
-    settings = (HERE.parent / "pyproject.toml").read_text()
+    settings = (HERE.parent / "pyproject.toml").read_text("utf-8")
     assert 'build-backend = "hatchling.build"' in settings
     assert "hooks" not in settings, "which could make the wheel one for a single machine"

@@ -99,7 +99,7 @@ def test_every_link_leads_somewhere(pages):
 @pytest.mark.slow
 @pytest.mark.browser
 def test_every_page_opens_without_an_error_or_a_request(pages, browser):
-    axe = (FRONT / "node_modules/axe-core/axe.min.js").read_text()
+    axe = (FRONT / "node_modules/axe-core/axe.min.js").read_text("utf-8")
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
     complaints = []
     page.on("pageerror", lambda error: complaints.append(str(error)))
@@ -163,7 +163,7 @@ def test_lighthouse_finds_every_page_open_to_all(pages, chromium, node):
         missing("lighthouse", f"Lighthouse is missing; get it with: npm install --no-save lighthouse@12, in {FRONT}")
     names = [path.relative_to(pages).as_posix() for path in to_look_at(pages)]
     command = [node, Path(__file__).with_name("lighthouse.mjs"), modules, chromium, pages, *names]
-    lines = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
+    lines = subprocess.run(command, check=True, capture_output=True, encoding="utf-8").stdout.splitlines()
     found = [json.loads(line) for line in lines]
     least = min(found, key=lambda page: page["mark"])
     print(f"{len(found)} pages; the least mark is {least}")
