@@ -1,4 +1,4 @@
-"""The command line: open the notebooks, write them as pages, judge equations, compare observers, run ensembles."""
+"""The command line: notebooks, pages, verdicts on equations, comparisons, ensembles, and boards to print."""
 
 import argparse
 import json
@@ -123,6 +123,29 @@ def compare(options: argparse.Namespace) -> int:
     return 0
 
 
+def film(options: argparse.Namespace) -> int:
+    """Read a film of a board; write it with distances drawn in, a live lab, tables, and a page that shows them."""
+    from percept_obs.film import Board, read_film
+    from percept_obs.film.page import page
+    from percept_obs.labs import observer_lab
+    from percept_obs.studies.all_observers import all_observers
+
+    board = (Board.from_json(options.board) if options.board else Board()).printed(options.ruler)
+    directory = options.directory or options.file.with_name(f"{options.file.stem}_distances")
+    _refuse_a_file(directory)
+    found = read_film(options.file, board)
+    directory.mkdir(parents=True, exist_ok=True)
+    print(found.sentence)
+    table = all_observers(found, max_tracks=options.tracks)
+    print(table)
+    found.overlay(directory / "film.mp4")
+    observer_lab(found).save(directory / "lab.html")
+    found.distances().to_csv(directory / "distances.csv", index=False)
+    write_whole(directory / "index.html", page(found, table, "film.mp4", "lab.html").encode())
+    print(f"open {directory / 'index.html'}")
+    return 0
+
+
 def sweep(options: argparse.Namespace) -> int:
     """Run the ensemble that a TOML file describes, here or on a Dask cluster; it goes on where it was stopped."""
     from contextlib import nullcontext
@@ -138,6 +161,36 @@ def sweep(options: argparse.Namespace) -> int:
         connected = Client(options.scheduler)
     with connected as client:
         print(sweep(options.file, client))
+    return 0
+
+
+STEPS = """1. Print board.pdf at 100 %, not "fit to page".
+2. Measure the ruler below the board: it must be 100 mm. If it is 97.5 mm, say --ruler 97.5 when you read the film.
+3. Lay the board flat, put things around it, and film for 20 s while you move the telephone slowly past them."""
+
+
+def board(options: argparse.Namespace) -> int:
+    """Write a chessboard with markers to print and to film: board.pdf to true size, and its numbers, board.json."""
+    from percept_obs.film import Board, board_pdf
+    from percept_obs.film.printing import SHARE, largest_square
+
+    directory: Path = options.directory
+    _refuse_a_file(directory)
+    square = options.square or largest_square(options.columns, options.rows)
+    marker = options.marker or SHARE * square
+    made = Board(options.columns, options.rows, square / 1000, marker / 1000)
+    files = {
+        directory / "board.pdf": board_pdf(made, options.paper),
+        directory / "board.json": made.text.encode(),
+    }
+    for target, content in files.items():
+        if target.exists() and target.read_bytes() != content:
+            raise _Mistake(f"{target} is there and holds something else; name another folder, or delete it")
+    directory.mkdir(parents=True, exist_ok=True)
+    for target, content in files.items():
+        write_whole(target, content)
+        print(f"wrote   {target}")
+    print(f"{made.name}\n{STEPS}")
     return 0
 
 
@@ -190,9 +243,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add("--noise", type=_positive(float), default=0.01, help="bound of the noise")
     add("--duration", type=_positive(float), default=80.0, help="seconds")
 
+    add = command(film, "find how far things are in a film of a board")
+    add("file", type=Path, metavar="FILE", help="a film, such as film.mp4")
+    add("directory", nargs="?", type=Path, metavar="DIR", help="folder for the results (default: beside the film)")
+    add("--board", type=Path, metavar="FILE", help="board.json of the printed board (default: the default board)")
+    ruler = "length that the printed ruler of 100 mm has on paper"
+    add("--ruler", type=_positive(float), default=100.0, metavar="MM", help=f"{ruler} (default: %(default)g)")
+    add(
+        "--tracks", type=_positive(int), default=40, help="most tracks in the table of observers (default: %(default)s)"
+    )
+
     add = command(sweep, "run an ensemble")
     add("file", type=Path, metavar="FILE", help="a TOML file that describes the ensemble")
     add("--scheduler", default="", metavar="ADDRESS", help="of a Dask cluster, tcp://host:8786")
+
+    add = command(board, "write a board to print and film")
+    add("directory", nargs="?", type=Path, default=Path("."), metavar="DIR", help="folder of the files (default: here)")
+    add("--paper", choices=("A4", "letter"), default="A4", help="(default: %(default)s)")
+    add("--columns", type=_positive(int), default=7, help="number of squares in a row (default: %(default)s)")
+    add("--rows", type=_positive(int), default=5, help="number of rows (default: %(default)s)")
+    add("--square", type=_positive(float), metavar="MM", help="side of a square (default: what fits on both papers)")
+    add("--marker", type=_positive(float), metavar="MM", help="side of a marker (default: 3/4 of the square's)")
 
     options = parser.parse_args(arguments)
     try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -43,13 +43,13 @@ class Board:
     --------
     >>> board = Board()
     >>> board.points.shape, board.points[0].tolist()
-    ((24, 3), [0.04, 0.04, 0.0])
+    ((24, 3), [0.036, 0.036, 0.0])
     """
 
     columns: int = 7
     rows: int = 5
-    square: float = 0.04
-    marker: float = 0.03
+    square: float = 0.036
+    marker: float = 0.027
 
     def __post_init__(self) -> None:
         if min(self.columns, self.rows) < 3 or self.columns * self.rows // 2 > 50:
@@ -72,12 +72,29 @@ class Board:
 
     def to_json(self, path: PathLike) -> None:
         """Write the board's numbers, which `from_json` reads."""
-        write_whole(Path(path), f"{json.dumps(asdict(self), indent=1)}\n".encode())
+        write_whole(Path(path), self.text.encode())
+
+    @property
+    def text(self) -> str:
+        """The board's numbers as its file and its QR code hold them, JSON."""
+        return json.dumps(asdict(self), separators=(",", ":"))
+
+    def printed(self, ruler: float = 100.0) -> Board:
+        """Return the board as it is on paper, where the ruler of 100 mm measures so many mm, from 50 to 200.
+
+        >>> Board().printed(ruler=97.5).name
+        '7 x 5 squares of 35.1 mm, markers of 26.325 mm'
+        """
+        if not 50 <= ruler <= 200:
+            raise ValueError(f"the ruler measures {ruler:g} mm; expected about 100, from 50 to 200: measure it in mm")
+        return replace(self, square=self.square * ruler / 100, marker=self.marker * ruler / 100)
 
     @property
     def name(self) -> str:
         """Name that is printed on it."""
-        return f"{self.columns} x {self.rows} squares of {1000 * self.square:g} mm, markers of {1000 * self.marker:g} mm"
+        return (
+            f"{self.columns} x {self.rows} squares of {1000 * self.square:g} mm, markers of {1000 * self.marker:g} mm"
+        )
 
     @property
     def size(self) -> tuple[float, float]:
@@ -88,7 +105,7 @@ class Board:
     def points(self) -> Array:
         """Inner corners in metres, shape (n, 3): x along the rows from the upper left, y down, z into the board."""
         x, y = np.meshgrid(np.arange(1, self.columns), np.arange(1, self.rows))
-        return self.square * np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
+        return np.stack([self.square * x.ravel(), self.square * y.ravel(), np.zeros(x.size)], axis=1)
 
     @cached_property
     def charuco(self) -> Any:
@@ -109,9 +126,13 @@ class Board:
         """Return the board in grey values, shape (h, w), with so many pixels a square, a multiple of 4."""
         return self.charuco.generateImage((self.columns * pixels, self.rows * pixels))
 
-    def detect(self, picture: Any) -> tuple[Indices, Array]:
-        """Return the numbers of the corners in a grey picture, and their pixels, shapes (m,) and (m, 2)."""
-        corners, numbers, _, _ = self._detector.detectBoard(picture)
+    def detect(self, picture: Any) -> tuple[Indices, Array, bool]:
+        """Return the numbers of the corners in a grey picture, shape (m,), and their pixels, shape (m, 2).
+
+        The last value is True if a marker is seen twice, so that there are two boards.
+        """
+        corners, numbers, _, markers = self._detector.detectBoard(picture)
+        twice = markers is not None and len(np.unique(markers)) < len(markers)
         if numbers is None:
-            return np.empty(0, dtype=int), np.empty((0, 2))
-        return np.ravel(numbers).astype(int), np.reshape(corners, (-1, 2)).astype(float)
+            return np.empty(0, dtype=int), np.empty((0, 2)), twice
+        return np.ravel(numbers).astype(int), np.reshape(corners, (-1, 2)).astype(np.float64), twice

@@ -1,4 +1,4 @@
-"""Frames of a film behind a track, as PNG files, and a film drawn from a recording."""
+"""Frames of a film behind tracks, as PNG or JPEG files, and a film drawn from a recording."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ from percept_obs.recording.recording import Recording
 from percept_obs.system.signal import frozen
 from percept_obs.validation import checked, limit
 
-SIGNATURE = b"\x89PNG"
+SIGNATURES = (b"\x89PNG", b"\xff\xd8\xff")
+"""First bytes of a PNG file and of a JPEG file."""
+
 MOST_BYTES = 20_000_000
 """Bytes of all frames together, which a notebook keeps with a lab."""
 
@@ -28,7 +30,7 @@ class Frames:
 
     Parameters
     ----------
-    images : folder of PNG files, or sequence of paths or of arrays of shape (h, w) or (h, w, 3)
+    images : folder of PNG or JPEG files, or sequence of their paths or bytes, or of arrays of shape (h, w) or (h, w, 3)
         A folder's files are taken in the order of their names; arrays hold 0 to 255, or 0.0 to 1.0.
     time : array of shape (K,)
         Times of the frames in seconds, increasing, by the recording's clock.
@@ -40,7 +42,7 @@ class Frames:
     Raises
     ------
     ValueError
-        If a file is no PNG, there are not as many times as images, or times do not increase.
+        If a file is no PNG or JPEG, there are not as many times as images, or times do not increase.
     TooMuchWork
         If the frames are too large together.
 
@@ -61,10 +63,12 @@ class Frames:
 
     def __post_init__(self) -> None:
         folder = isinstance(self.images, str | Path)
-        pictures = sorted(Path(self.images).glob("*.png")) if folder else self.images
+        pictures = self.images
+        if folder:
+            pictures = sorted(p for p in Path(pictures).glob("*") if p.suffix.lower() in (".png", ".jpg", ".jpeg"))
         if folder and not pictures:
-            raise ValueError(f"the folder {str(self.images)!r} holds no .png files; give one with frames in it")
-        images = tuple(_png(image, k) for k, image in enumerate(pictures, 1))
+            raise ValueError(f"the folder {str(self.images)!r} holds no .png or .jpg files; give one with frames in it")
+        images = tuple(_encoded(image, k) for k, image in enumerate(pictures, 1))
         limit(sum(map(len, images)), "bytes of frames", "take fewer or smaller ones", MOST_BYTES)
         time = frozen(np.asarray(self.time, dtype=float), "the times of the frames")
         extent = frozen(np.asarray(self.extent, dtype=float), "the edges of the frames")
@@ -77,12 +81,13 @@ class Frames:
         vars(self).update(images=images, time=time, extent=tuple(extent.tolist()))
 
 
-def _png(image: Any, number: int) -> bytes:
-    """Return the bytes of a PNG file, or of pixels as one."""
-    if isinstance(image, str | Path):
-        data = Path(image).read_bytes()
-        if not data.startswith(SIGNATURE):
-            raise ValueError(f"frame {number}, {str(image)!r}, is no PNG file; convert it")
+def _encoded(image: Any, number: int) -> bytes:
+    """Return the bytes of a PNG or JPEG file, or of pixels as a PNG file."""
+    if isinstance(image, str | Path | bytes):
+        data = image if isinstance(image, bytes) else Path(image).read_bytes()
+        if not data.startswith(SIGNATURES):
+            named = "" if isinstance(image, bytes) else f" {str(image)!r},"
+            raise ValueError(f"frame {number},{named} is no PNG or JPEG file; convert it")
         return data
     pixels = np.asarray(image)
     if pixels.dtype.kind == "f":

@@ -82,11 +82,9 @@ class Recording:
         Length, in the recording's own unit of length, by which observers and studies measure hidden lengths inside:
         gains and variances are numbers in it.  So nothing relative changes if all lengths and the unit are written in
         millimetres.  Without effect on several points, whose equations are linear.
-
-    Warns
-    -----
-    Unlikely
-        If the samples look like pixels, or a sampled motion has a hole while it is needed.
+    doubt : str
+        Reason why images or motion are not as they are known, such as "the lens focuses anew"; no estimate is trusted
+        then.
 
     Raises
     ------
@@ -94,6 +92,11 @@ class Recording:
         If a point that is seen is not in front of the camera by its truth.
     ValueError
         If shapes do not fit, times do not increase, or values are not finite where they must be.
+
+    Warns
+    -----
+    Unlikely
+        If the samples look like pixels, or a sampled motion has a hole while it is needed.
 
     See Also
     --------
@@ -119,6 +122,7 @@ class Recording:
     distances: Mapping[str, Array] = field(default_factory=dict)
     source: str = ""
     unit: float = 1.0
+    doubt: str = ""
 
     def __post_init__(self) -> None:
         _refuse_order("outputs", self.outputs, list(self.names))

@@ -16,6 +16,7 @@ Pages = Iterator[tuple[str, str]]
 
 FOLDERS = {
     "labs": "",
+    "film": "",
     "figures": "",
     "observers": "family gains parts integral_sliding_mode",
     "points": "gramian ray scenarios utias",

@@ -14,6 +14,7 @@ from percept_obs.compile import choose
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
+from percept_obs.recording.footage import Footage
 from percept_obs.studies.comparison import Follow
 from percept_obs.studies.least_squares import moving_window_least_squares
 from percept_obs.studies.likelihood import MOST, STARTS, tune_by_likelihood
@@ -111,7 +112,7 @@ def all_observers(
     split: Split = "alternating",
     start: Mapping[str, float] | None = None,
     after: Sequence[float] = (1.0, 2.0, 3.0),
-    references: Sequence[str] = ("truth",),
+    references: Sequence[str] | None = None,
     candidates: Mapping[Family | FunctionObserver, Sequence[Gains]] | None = None,
     max_tracks: int | None = None,
     **settings: Any,
@@ -129,8 +130,9 @@ def all_observers(
         Estimates at the first sample; twice the median distance of the recordings to choose on when left out.
     after : sequence of float
         Seconds since the first sample at which errors are looked at; those that recordings last.
-    references : sequence of str
-        "truth", or names of measured distances; gains are chosen by the first of them.
+    references : sequence of str, optional
+        "truth", or names of measured distances, of which a recording has one; gains are chosen by the first of them.
+        Those of a film, or the truth, when left out.
     candidates : mapping of families to their gains, optional
         The candidates in every observer's own file when left out.
     max_tracks : int, optional
@@ -167,6 +169,8 @@ def all_observers(
     >>> sorted(set(found.table["observer"]))
     ['De Luca', 'Spica', 'least squares on 2 s']
     """
+    if references is None:
+        references = recordings.references if isinstance(recordings, Footage) else ("truth",)
     if not len(recordings):
         raise ValueError("there are no recordings; give at least two, one to choose gains on and one to report on")
     if not len(references) or not len(after):
@@ -313,8 +317,8 @@ def _why_not(
     there = {*recording.distances, *(["truth"] if recording.truth is not None else [])}
     if lacking := [name for name in references if name not in there]:
         return f"it has no {' and no '.join(lacking)} to compare with; name other references"
-    if unknown := [name for name in references if np.isnan(recording.reference(name)).all()]:
-        return f"its {' and '.join(unknown)} is known at no sample"
+    if references and all(np.isnan(recording.reference(name)).all() for name in references):
+        return f"its {' and '.join(references)} is known at no sample"
     if recording.elapsed[-1] < shortest - slack_of(recording.time):
         return f"it lasts {recording.elapsed[-1]:.3g} s, and the first error is asked for after {shortest:g} s"
     return ""

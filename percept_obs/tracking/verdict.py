@@ -76,6 +76,7 @@ BLIND = MappingProxyType(
             "more during the recording"
         ),
         "wide": "; do not trust the estimate: the filter itself is not sure enough of {judged}",
+        "doubted": "; do not trust the estimate: {doubt}",
         "rests": "; this rests on the length of your translation",
     }
 )
@@ -112,7 +113,7 @@ class Trust:
 
     The kind is "agrees" (with what the samples tell), "differs", "wide" (the observer claims more than the tolerance),
     "contradicted" (longer windows tell something else, so that the motion is not as it is known), "drifting" (the scale
-    of the motion drifts), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the estimate is
+    of the motion drifts), "doubted" (the recording has a doubt), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the estimate is
     infinitely far away or behind the camera) or "no estimate".  The difference is the estimate's relative
     distance to the information's, and NaN where that is vague or contradicted; `claimed` is the relative standard
     deviation that the observer claims.
@@ -125,6 +126,7 @@ class Trust:
     difference: float = math.nan
     disagreement: float = 0.0
     claimed: float | None = None
+    doubt: str = ""
 
     @property
     def trusted(self) -> bool:
@@ -145,7 +147,7 @@ class Trust:
         """The judgement as the end of another sentence."""
         fields = {"judged": self.judged, "difference": percent(self.difference), "apart": percent(self.disagreement)}
         if self.information is None:
-            return VERDICTS[self.kind]
+            return {**VERDICTS, **BLIND}[self.kind].format(doubt=self.doubt)
         window, unexcited = self.information.window, self.information.unexcited
         fields |= {"window": number(window), "within": percent(2 * self.information.deviation)}
         said = {**VERDICTS, **BLIND}[self.kind].format(**fields)

@@ -1,0 +1,135 @@
+"""The lens of a camera and its pose in each picture, from the corners of a board."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from percept_obs.compile import Array, Flags, Indices
+from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.poses import Poses
+
+FEWEST = 8
+"""Corners of the board that a picture shows at least, for a pose."""
+
+FEWEST_PICTURES = 10
+"""Pictures with a pose that a film needs."""
+
+ALIKE = 1.5
+"""Ratio of two poses' errors up to which either may be true."""
+
+UNSURE = 0.01
+"""Standard deviation of the principal point, over the size of the picture, from which on it is taken as the middle."""
+
+FOLDED = 0.1
+"""Least slope of a lens in the corner of the picture; below it no direction may be seen there."""
+
+MOST_VIEWS = 40
+"""Pictures from which the lens is found, as different as there are."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lens:
+    """Camera, the relative standard deviation of its focal length, and the views' root mean square error in pixels."""
+
+    camera: PixelCamera
+    deviation: float
+    error: float
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """Poses of a camera in those of K pictures that show enough of the board.
+
+    `index` are the pictures', `covariance` is of the turn along the camera's axes and of the position along the world's
+    ones, shape (m, 6, 6), and `error` the root mean square error of the corners in pixels.
+    """
+
+    index: Indices
+    poses: Poses
+    covariance: Array
+    error: float
+
+
+def find_lens(corners: Array, places: Array, size: tuple[int, int]) -> Lens:
+    """Return the lens that explains the corners, shape (K, n, 2), of places on a plane, shape (n, 3)."""
+    import cv2
+
+    views = _different(corners)
+    seen = [np.isfinite(corners[k]).all(axis=1) for k in views]
+    there = [places[each].astype(np.float32) for each in seen]
+    pixels = [corners[k][each].astype(np.float32)[:, None] for k, each in zip(views, seen, strict=True)]
+    start = np.array([[max(size), 0, (size[0] - 1) / 2], [0, max(size), (size[1] - 1) / 2], [0, 0, 1.0]])
+    plain = cv2.CALIB_FIX_K2 | cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST  # more is not told by a small board
+    middle = cv2.CALIB_FIX_PRINCIPAL_POINT
+    for fixed in (0, middle, middle | cv2.CALIB_FIX_K1):
+        flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO | plain | fixed
+        error, matrix, lens, _, _, spread, *_ = cv2.calibrateCameraExtended(
+            there, pixels, size, start.copy(), np.zeros(5), flags=flags
+        )
+        corner = float(np.hypot(*size)) / 2 / matrix[1, 1]
+        if spread[2:4].max() < UNSURE * max(size) and 1 + 3 * lens.ravel()[0] * corner**2 > FOLDED:
+            break
+    camera = PixelCamera((matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2]), size, lens.ravel()[:4])
+    alike = np.sqrt(np.mean([2 * len(each) for each in there]))  # the errors in one view are no independent ones
+    return Lens(camera, float(alike * spread[1, 0] / matrix[1, 1]), float(error))
+
+
+def _different(corners: Array) -> list[int]:
+    """Return pictures with most of the corners that differ most from each other, at most `MOST_VIEWS`."""
+    count = np.isfinite(corners).all(axis=2).sum(axis=1)
+    rich = np.flatnonzero(count >= max(FEWEST, 0.7 * count.max()))
+    filled = np.where(np.isfinite(corners[rich]), corners[rich], np.nanmean(corners[rich], axis=1, keepdims=True))
+    shape = filled.reshape(len(rich), -1)
+    chosen = [0]
+    far = np.linalg.norm(shape - shape[0], axis=1)
+    while len(chosen) < min(MOST_VIEWS, len(rich)):
+        chosen.append(int(far.argmax()))
+        far = np.minimum(far, np.linalg.norm(shape - shape[chosen[-1]], axis=1))
+    return [int(rich[k]) for k in chosen]
+
+
+def usable(corners: Array) -> Flags:
+    """Return True for pictures that show enough of the board, not all in a line, shape (K,)."""
+    return np.asarray(np.isfinite(corners).all(axis=2).sum(axis=1) >= FEWEST)
+
+
+def find_poses(time: Array, corners: Array, places: Array, camera: PixelCamera) -> Seen:
+    """Return the camera's poses in the pictures that show enough of the board."""
+    import cv2
+    from scipy.spatial.transform import Rotation
+
+    matrix, lens = camera.matrix, np.array(camera.distortion or np.zeros(4))
+    index, turns = np.flatnonzero(usable(corners)), np.empty((0, 3, 3))
+    positions, normals, left = [], [], []
+    for k in index:
+        seen = np.isfinite(corners[k]).all(axis=1)
+        there, pixels = places[seen], corners[k][seen]
+        found = cv2.solvePnPGeneric(there, pixels, matrix, lens, flags=cv2.SOLVEPNP_IPPE)
+        turn, shift = cv2.solvePnPRefineLM(there, pixels, matrix, lens, *_likely(*found[1:], turns[-1:]))
+        shown, slope = cv2.projectPoints(there, turn, shift, matrix, lens)
+        rotation = Rotation.from_rotvec(turn.ravel()).as_matrix()
+        moved = slope[:, 3:6].reshape(-1, 2, 3)
+        turned = np.cross((there @ rotation.T + shift.ravel())[:, None], moved)  # of the points about the camera
+        J = np.concatenate([turned, moved @ rotation], axis=2).reshape(-1, 6)  # the board moves as the camera does
+        turns = np.concatenate([turns, [rotation.T]])
+        positions.append(-rotation.T @ shift.ravel())
+        normals.append(J.T @ J)
+        left.append((shown[:, 0] - pixels).ravel())
+    rest = np.concatenate(left)
+    sigma = float(np.median(np.abs(rest))) / 0.6745 * np.sqrt(len(rest) / (len(rest) - 6 * len(index)))
+    poses = Poses(time[index], np.array(positions), turns)
+    return Seen(index, poses, sigma**2 * np.linalg.inv(normals), float(np.sqrt(np.mean(rest**2))))
+
+
+def _likely(turns: Any, shifts: Any, errors: Any, before: Array) -> tuple[Any, Any]:
+    """Return the pose with the least error, or, of two that explain a small plane alike, the one nearer to before."""
+    from scipy.spatial.transform import Rotation
+
+    best = 0
+    if len(turns) > 1 and len(before) and errors[1] < ALIKE * errors[0]:
+        found = Rotation.from_rotvec(np.reshape(turns, (-1, 3))).inv().as_matrix()
+        best = int(np.linalg.norm(found - before, axis=(1, 2)).argmin())
+    return turns[best], shifts[best]

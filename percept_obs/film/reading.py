@@ -1,0 +1,225 @@
+"""Read a film: lens and poses from a board in it, or poses that are given; tracks and distances of its points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from percept_obs.compile import Array
+from percept_obs.film.board import Board
+from percept_obs.film.film import BOARD, TRIANGULATION, Film
+from percept_obs.film.lens import FEWEST, FEWEST_PICTURES, Seen, find_lens, find_poses
+from percept_obs.film.pictures import undistorted
+from percept_obs.film.sighting import SHORTEST_TRACK, Sighting, sight
+from percept_obs.film.triangulation import triangulate
+from percept_obs.film.video import Video, open_film
+from percept_obs.recording import Recording
+from percept_obs.recording.derivatives import Derivative
+from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.poses import USUAL, CameraPath, Poses
+from percept_obs.recording.text_table import PathLike
+from percept_obs.recording.track_table import runs
+from percept_obs.system.surfaces import pinhole
+from percept_obs.validation import checked
+
+SHORTEST_FILM = 1.5
+"""Seconds that a film lasts at least."""
+
+GAP = 0.3
+"""Seconds without a pose, or without a corner of the board, after which another part begins."""
+
+JUMP, FASTEST = 20.0, 5.0
+"""Median steps, and metres a second, beyond which the camera cannot have moved: the film was cut there."""
+
+LARGEST_SPREAD = 2.0
+"""Pixels by which samples of a point at rest scatter at most."""
+
+SURE = 0.1
+"""Largest relative standard deviation of a triangulated distance."""
+
+
+@checked
+def read_film(
+    path: PathLike,
+    board: Board | PathLike | None = None,
+    camera: PixelCamera | None = None,
+    poses: Poses | None = None,
+    derivative: Derivative = USUAL,
+) -> Film:
+    """Read a film of a printed board and of things at rest around it.
+
+    Parameters
+    ----------
+    path : path
+        A film that PyAV reads, such as MP4.
+    board : Board or path of its file, optional
+        Board in the film; the default `Board` when left out.
+    camera : PixelCamera, optional
+        In pixels of the upright film; found from the board when left out.
+    poses : Poses, optional
+        Of the camera, by the film's clock, for a film without a board; a camera is then needed.
+    derivative : Neighbours, Quadratic or SmoothingSpline
+        Of the poses.
+
+    Returns
+    -------
+    Film
+        A sequence of recordings, which `all_observers`, `diagnose` and `observer_lab` take as it is.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ModuleNotFoundError
+        If PyAV or OpenCV is missing.
+    ValueError
+        If it is no film, shows no board or too little of it, or two of a kind, or nothing is seen for long enough.
+
+    See Also
+    --------
+    Film : The result.
+    percept_obs.recording.colmap.read_colmap : Poses of a film without a board.
+
+    Notes
+    -----
+    Corners of the board, calibration, poses and optical flow are OpenCV's.  A rolling shutter is measured from the
+    board, and corners are put to where they were at the time of the picture's middle.  What was seen in the pictures
+    is kept in the cache of the system for the next time.
+
+    Examples
+    --------
+    >>> film = read_film("film.mp4", "board.json")  # doctest: +SKIP
+    >>> film.recordings[0].source  # doctest: +SKIP
+    'board corner 0'
+    """
+    video = open_film(path)
+    if poses is not None and camera is None:
+        raise ValueError("poses are given and no camera; give also camera=PixelCamera(...), in pixels of the film")
+    printed = board if isinstance(board, Board) else Board() if board is None else Board.from_json(board)
+    sighting = sight(video, printed)
+    seen, findings, unsure = None, (), 0.0
+    if poses is None:
+        _refuse_unseen(sighting, printed, video)
+        if camera is None:
+            lens = find_lens(sighting.corners, printed.points, video.size)
+            camera, unsure = lens.camera, lens.deviation
+        seen = find_poses(sighting.time, sighting.corners, printed.points, camera)
+        poses = seen.poses
+    assert camera is not None
+    travelled = _path(poses, derivative)
+    recordings = (*_corners(sighting, printed, camera, seen, travelled), *_others(sighting, camera, travelled))
+    if not recordings:
+        raise ValueError(
+            f"'{video.path}' shows no point for {SHORTEST_TRACK:g} s while the camera's pose is known; move slowly, "
+            "with the board in the picture"
+        )
+    frames = undistorted(sighting, camera)
+    return Film(
+        recordings,
+        (BOARD, TRIANGULATION),
+        frames,
+        video.path.name,
+        video,
+        camera,
+        travelled,
+        findings,
+        sighting,
+        unsure,
+        printed,
+        seen,
+    )
+
+
+def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
+    """Refuse a film in which too few pictures show enough of the board."""
+    count = np.isfinite(sighting.corners).all(axis=2).sum(axis=1)
+    enough = int((count >= FEWEST).sum())
+    if sighting.twice.mean() > 0.1:
+        raise ValueError(f"'{video.path}' shows two boards with the same markers; leave one in the picture")
+    if np.ptp(sighting.time) < SHORTEST_FILM or len(count) < FEWEST_PICTURES:
+        raise ValueError(
+            f"'{video.path}' is too short: {len(count)} pictures in {np.ptp(sighting.time):.1f} s; film for 10 to 20 s"
+        )
+    if enough < FEWEST_PICTURES:
+        raise ValueError(
+            f"{enough} of {len(count)} pictures of '{video.path}' show {FEWEST} corners of the board, {board.name}, "
+            f"and {FEWEST_PICTURES} are needed. Is it this board (board=...)? It must lie flat, be sharp, and "
+            "fill a third of the picture's width. Without a board, give poses=... and camera=..., as of read_colmap"
+        )
+
+
+def _path(poses: Poses, derivative: Derivative) -> CameraPath:
+    """Return smoothed poses and velocities of each part without a gap that is long enough for the derivative."""
+    far = np.linalg.norm(np.diff(poses.position, axis=0), axis=1)
+    jumps = 1 + np.flatnonzero(far > np.maximum(JUMP * np.median(far), FASTEST * np.diff(poses.time)))  # as at a cut
+    whole = np.split(np.arange(len(poses.time)), jumps)
+    parts = [part for each in whole for part in runs(poses.time, each, GAP) if len(part) >= derivative.fewest]
+    if not parts:
+        raise ValueError(
+            f"the poses have gaps of more than {GAP:g} s everywhere; keep the board in the picture while you move"
+        )
+    found = [Poses(poses.time[part], poses.position[part], poses.orientation[part]).path(derivative) for part in parts]
+    return CameraPath(
+        *(
+            np.concatenate([getattr(each, name) for each in found])
+            for name in ("time", "position", "orientation", "velocity", "angular_velocity")
+        )
+    )
+
+
+def _corners(
+    sighting: Sighting, board: Board, camera: PixelCamera, seen: Seen | None, path: CameraPath
+) -> Iterator[Recording]:
+    """Yield recordings of the board's corners, with their truth."""
+    if seen is None:
+        return
+    for number, place in enumerate(board.points):
+        rows = np.flatnonzero(np.isfinite(sighting.corners[:, number]).all(axis=1))
+        yield from _recordings(
+            f"board corner {number}", sighting.time[rows], sighting.corners[rows, number], camera, path, place
+        )
+
+
+def _others(sighting: Sighting, camera: PixelCamera, path: CameraPath) -> Iterator[Recording]:
+    """Yield recordings of other points at rest."""
+    for number, (first, pixels) in enumerate(sighting.tracks, 1):
+        time = sighting.time[first : first + len(pixels)]
+        yield from _recordings(f"point {number}", time, pixels, camera, path)
+
+
+def _recordings(
+    name: str, time: Array, pixels: Array, camera: PixelCamera, path: CameraPath, known: Array | None = None
+) -> Iterator[Recording]:
+    """Yield a recording of each part of a track for which poses are known, if the point rests where rays meet."""
+    row = np.searchsorted(path.time, time)
+    there = (row < len(path.time)) & (path.time[np.minimum(row, len(path.time) - 1)] == time)
+    surface, turns = pinhole(), path.rotation
+    parts = runs(time, np.flatnonzero(there), GAP)
+    for part in parts:
+        if time[part[-1]] - time[part[0]] < SHORTEST_TRACK:
+            continue
+        at, image = row[part], camera.image(pixels[part])
+        place = triangulate(path.position[at], turns[at].as_matrix(), image)
+        first = int(place.agree.argmax())  # observers start from the first sample
+        if known is None and not (place.deviation < SURE and place.spread * camera.focal[0] < LARGEST_SPREAD):
+            continue
+        local = {
+            key: turns[at].inv().apply(point - path.position[at])
+            for key, point in ((TRIANGULATION, place.position), (BOARD, known))
+            if point is not None
+        }
+        if not all((points[:, 2] > 0).all() for points in local.values()):
+            continue
+        distances = {key: points[first:, 2] for key, points in local.items()}
+        yield Recording(
+            time[part][first:],
+            np.where(place.agree[:, None], image, np.nan)[first:],
+            ("y1", "y2"),
+            surface,
+            path.motion,
+            truth=None if known is None else surface.project(local[BOARD])[first:],
+            noise_variance=place.spread**2,
+            distances={**distances, BOARD: distances.get(BOARD, np.full(len(part) - first, np.nan))},
+            source=name if len(parts) == 1 else f"{name}, from {time[part[0]]:.1f} s",
+        )

@@ -1,0 +1,2 @@
+def edge_width(picture, corners, board):
+    return float("nan")
