@@ -75,6 +75,19 @@ def collect(options: argparse.Namespace) -> int:
     return 0
 
 
+def exam(options: argparse.Namespace) -> int:
+    """Write a version of the exam with other numbers, and its solutions for teachers, which are computed anew."""
+    from percept_obs.site.exam import exam
+
+    if not options.seed.isalnum():
+        raise _Mistake(f"{options.seed!r} cannot be part of a file's name; name a version with letters and digits")
+    for name, text in zip(("questions", "solutions"), exam(options.seed), strict=True):
+        target = options.directory / f"exam_{options.seed}_{name}.md"
+        write_whole(target, text.encode())
+        print(f"wrote   {target}")
+    return 0
+
+
 def site(options: argparse.Namespace) -> int:
     """Write the course as pages that need neither Python nor a network, with live labs, equations and reference."""
     from percept_obs.site import NEEDS, SiteFault, build
@@ -239,7 +252,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     copies = "where your copies live (default: ./%(default)s); nothing is overwritten"
     add("directory", nargs="?", type=Path, default=Path("percept_obs_notebooks"), metavar="DIR", help=copies)
     add("--for", **readers)
-    add("--student", default="", metavar="NAME", help="make the exercises a student's own: numbers follow from the name")
+    add(
+        "--student", default="", metavar="NAME", help="make the exercises a student's own: numbers follow from the name"
+    )
     add("--copy-only", action="store_true", help="copy the notebooks, do not open them")
     add("--no-browser", action="store_true", help="start JupyterLab without a browser")
 
@@ -249,6 +264,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add("--roster", type=Path, metavar="FILE", help="CSV file with columns student and, if need be, folder and due")
     limits = "also run the cells of answers that are no plain text or number, with limits, but as you: see the guide"
     add("--run", dest="run_code", action="store_true", help=limits)
+
+    add = command(exam, "write a version of the exam")
+    add(
+        "seed",
+        metavar="SEED",
+        help="name or number of the version, such as 2026A; it gives the same numbers everywhere",
+    )
+    add("directory", nargs="?", type=Path, default=Path("."), metavar="DIR", help="folder of the files (default: here)")
 
     add = command(site, "write the course as pages")
     add("directory", type=Path, metavar="DIR", help="folder of the pages")

@@ -1,84 +1,128 @@
-"""A class that hands in: right, wrong, empty, altered and hostile copies, and what their marks must be.
+"""A class that hands in: right, wrong, empty, altered, copied and hostile notebooks, and the marks that they must get.
 
-`python tests/course_class.py` gives 40 students the notebooks 00, 08, 12 and 13, ten each, and collects them.
+`python tests/course_class.py` makes the copies of 40 students, ten for each of four notebooks, collects them, and prints
+what differs, which marks of intruders were left, and the seconds.
 """
 
 import copy
 import json
-import shutil
-import sys
+import os
 import tempfile
 import time
 from pathlib import Path
 
 from mistakes import MISTAKES
-from notebook_exercises import answer_name, source, tagged
 
 from percept_obs.exercises import individual, students_copy
 from percept_obs.exercises.collecting import collect
-from percept_obs.exercises.marking import named, programs
+from percept_obs.exercises.marking import answered, programs
 from percept_obs.exercises.models import notebooks
 
-STUDENTS = """Ada Ben Chiara Dmitri Elif Fatima Goran Hana Ines Jamal Kofi Lena Minh Nadia Olu Paula Qiang Rosa Sven Tala
-Uma Viktor Wanda Ximena Yusuf Zoe Ana Bao Carl Dina Emre Femi Gita Hugo Iva Jun Kaya Luca Mira Noor""".split()
-KINDS = ("right", "wrong", "empty", "altered", "hostile", "late", "another's", "missing")
-HOSTILE = (  # what must have no effect; each would leave the file
-    'import pathlib; pathlib.Path({mark!r}).touch()\n{name} = {answer!r}',
-    "{name} = __import__('pathlib').Path({mark!r}).touch()",
-    "!touch {mark}\n{name} = {answer!r}",
-    "{name} = " + "(" * 1000 + "1" + ")" * 1000,
-    "{name} = '__import__(\"pathlib\").Path(\"{mark}\").touch()'",
-    "{name} = ['=cmd|touch {mark}', [[[]]]]",
-    "{name} = " + "9" * 3000,
-    "{name} = 1e308 * 10",
-    "{name} = {{'gain': '__import__(\"pathlib\").Path(\"{mark}\").touch()'}}",
-    "{name} = '=HYPERLINK(\"{mark}\")'",
+STUDENTS = (
+    "Ada Ben Chiara Dmitri Elif Fatima Goran Hana Ines Jamal Kofi Lena Minh Nadia Olu Paula Qiang Rosa Sven Tala "
+    "Uma Viktor Wanda Ximena Yusuf Zoe Ana Bao Carl Dina Emre Femi Gita Hugo Iva Jun Kaya Luca Mira Noor"
+).split(" ")
+HOSTILE = (  # each would leave a file if a word of it ran; the answer after it is the right one, or none
+    ("import pathlib; pathlib.Path({mark!r}).touch()\n{name} = {answer!r}", "right"),
+    ("{name} = __import__('pathlib').Path({mark!r}).touch()", "unread"),
+    ("!touch {mark}\n{name} = {answer!r}", "unread"),
+    ("%%bash\ntouch {mark}", "unread"),
+    ("{name} = " + "(" * 900 + "1" + ")" * 900, "unread"),
+    ("{name} = '__import__(\"pathlib\").Path(\"{mark}\").touch()'", "unread"),
+    ("{name} = ['=cmd|touch {mark}', [[[]]]]", "unread"),
+    ("{name} = " + "9" * 3900, "unread"),
+    ("{name} = 1e308 * 10", "unread"),
+    ("{name} = {{'gain': '__import__(\"pathlib\").Path(\"{mark}\").touch()'}}", "unread"),
+    ("{name} = '=HYPERLINK(\"{mark}\")'", "unread"),
+    ("class Cheat: right = True\n{name} = Cheat()", "unread"),
+    ("{name} = f'{{open({mark!r}, \"w\")}}'", "unread"),
 )
+BROKEN = ('{"cells": ', '{"cells": {}}', "[" * 100_000, '{"cells": [{"id": "goals", "source": 7}]}', "\x00")
 
 
-def literal_answers(name, student):
-    """The solutions of a student's own tasks, as plain text or numbers: the shipped solutions, run."""
+def solutions(name, student):
+    """The right answers to a student's own tasks, as text and numbers: the shipped solutions after their lesson."""
     notebook, names, found = individual(notebooks()[name], student), {}, {}
-    checks = {task: named(check) for task, _, check in programs(notebook) if task}
-    for cell in (each for each in notebook["cells"] if each["cell_type"] == "code"):
-        text, task = "".join(cell["source"]), cell["id"]
-        if task in checks:
-            exec(text, names)
-            value = names[checks[task]]
-            found[task] = value.item() if hasattr(value, "item") else value
-        elif name[:2] in ("12", "15") or cell["metadata"].get("tags") == ["none"]:
-            text = next((first for other, first, _ in programs({"cells": [cell]})), "")
-            exec(text, names)
+    checks = {task: answered(check)[1] for task, _, check in programs(notebook) if task}
+    for cell in notebook["cells"]:
+        if cell.get("id") in checks:
+            exec("".join(cell["source"]), names)
+            found[cell["id"]] = names[checks[cell["id"]]]
     return found
 
 
-def hand_in(folder, student, name, kind, mark, k=0):
-    """Write what a student of a kind hands in, and return what its tasks' marks must be."""
-    shipped = notebooks()[name]
-    if kind == "missing":
-        return dict.fromkeys(MISTAKES[name.removesuffix(".ipynb")], "missing")
-    owner = "Somebody Else" if kind == "another's" else student
-    notebook = copy.deepcopy(students_copy(individual(shipped, owner)))
-    answers = literal_answers(name, student)
-    expected = {}
+def hand_in(folder, student, name, kind, mark, number=0):
+    """Write what a student of a kind hands in, and return what the marks of its tasks must begin with."""
+    stem = name.removesuffix(".ipynb")
+    owner = f"{student}'s friend" if kind == "copied" else student
+    notebook = copy.deepcopy(students_copy(individual(notebooks()[name], owner)))
+    answers, expected = solutions(name, owner), {}
     for cell in notebook["cells"]:
-        task = cell.get("id", "")
+        task = cell["id"]
         if task in answers:
             variable = "".join(cell["source"]).split(" ")[0]
-            right = f"{variable} = {answers[task]!r}"
-            wrong = f"{variable} = {MISTAKES[name.removesuffix('.ipynb')][task][0]!r}"
-            text, expected[task] = {
-                "wrong": (wrong, "wrong"),
-                "empty": (f"{variable} = ...  # your answer", "empty"),
-                "hostile": (HOSTILE[k % len(HOSTILE)].format(mark=str(mark), name=variable, answer=answers[task]), None),
-            }.get(kind, (right, "right"))
+            text, expected[task] = f"{variable} = {answers[task]!r}", "right"
+            if kind == "wrong":
+                text, expected[task] = f"{variable} = {wrong(stem, task, answers[task])!r}", "wrong"
+            elif kind == "empty":
+                text, expected[task] = f"{variable} = ...  # your answer", "empty"
+            elif kind == "copied" and isinstance(answers[task], str):
+                expected[task] = "right" if answers[task] == solutions(name, student)[task] else "wrong"
+            elif kind == "copied":  # a friend's number may be right for both
+                del expected[task]
+            elif kind == "hostile":
+                text, expected[task] = HOSTILE[number % len(HOSTILE)]
+                text = text.format(mark=str(mark), name=variable, answer=answers[task])
             cell["source"] = text.splitlines(keepends=True)
         elif task.endswith("-model-answer-1"):
-            said = "=cmd|' /C calc'!A0 all of it" if kind == "hostile" else f"Only motion tells it, says {student}."
+            said = "=cmd|' /C calc'!A0 of it" if kind == "hostile" else f"Only motion tells it, says {student}."
             cell["source"] = ["".join(cell["source"]).replace("...", repr(said))]
         elif kind == "altered" and task.endswith("-check"):
             cell["source"] = ["type('Attempt', (), {'right': True})()"]
+            cell["outputs"] = [{"data": {"text/markdown": f"✓ *Task {task[:-6]}: attempt 2, hints 1, minutes 9.*"}}]
     place = folder / student
     place.mkdir(parents=True)
     (place / name).write_text(json.dumps(notebook), encoding="utf-8")
-    return expected
+    if kind == "hostile":
+        (place / "broken.ipynb").write_text(BROKEN[number % len(BROKEN)])
+        os.symlink("/dev/zero", place / "endless.ipynb")
+    return {f"{name[:2]} {task}": mark for task, mark in expected.items()}
+
+
+def wrong(stem, task, right):
+    """A typical mistake: another letter than the right one, or one of those that the notebook's exercises refuse."""
+    return next(m for m in (*MISTAKES[stem][task], "a") if m != right and (len(str(right)) > 1 or len(str(m)) == 1))
+
+
+KINDS = ("right", "wrong", "empty", "altered", "copied", "hostile", "hostile", "hostile")
+
+
+def hand_out(folder, names, students=STUDENTS, kinds=KINDS, mark="/tmp/percept_obs_intruder"):
+    """Write what a class hands in, and return its kinds and the marks to expect, by student."""
+    given = {student: kinds[k % len(kinds)] for k, student in enumerate(students)}
+    return given, {
+        student: hand_in(folder, student, names[k // len(kinds) % len(names)], kind, mark, k)
+        for k, (student, kind) in enumerate(given.items())
+    }
+
+
+def differences(table, expected):
+    """Marks that are not what was put in."""
+    rows = table.set_index("student")
+    return [
+        (student, task, mark, found)
+        for student, marks in expected.items()
+        for task, mark in marks.items()
+        if not (found := rows.loc[student, task]).startswith(mark) and not (mark == "unread" and found == "wrong")
+    ]
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as place:
+        mark = Path(place, "intruder")
+        given, expected = hand_out(Path(place, "class"), ["00_start.ipynb", "08_check_a_derivation.ipynb"], mark=mark)
+        began, processor = time.perf_counter(), time.process_time()
+        table = collect(Path(place, "class"))
+        print(f"{len(table)} students, {sum(map(len, expected.values()))} answers, {len(table.columns)} columns")
+        print(f"{time.perf_counter() - began:.1f} s, {time.process_time() - processor:.1f} s of processor time")
+        print("differ:", differences(table, expected), "intruder:", mark.exists())

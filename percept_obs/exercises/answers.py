@@ -54,7 +54,9 @@ REFUSALS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 """Errors that an answer of another kind than is asked for raises where it is used."""
 
 
-def derive(mine: Any, target: Any, *asked: str, letters: Mapping[str, float] = MappingProxyType({})) -> Attempt | Review:
+def derive(
+    mine: Any, target: Any, *asked: str, letters: Mapping[str, float] = MappingProxyType({})
+) -> Attempt | Review:
     """Check a formula by `percept_obs.check`; dots are no answer yet, and no line may be missing.
 
     Parameters

@@ -4,46 +4,21 @@ from __future__ import annotations
 
 import re
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from percept_obs.checking import Review
 from percept_obs.exercises.answers import Attempt
 
-WRITTEN = re.compile(r"\*Task ([\w-]+): attempt (\d+), hints (\d+), minutes (\d+)\.\*")
-"""A tally as `tally` writes it."""
+WRITTEN = re.compile(r"\*Task ([\w-]+): attempt (\d{1,6}), hints (\d{1,6}), minutes (\d{1,6})\.\*")
+"""A count as `tally` writes it."""
 
-
-@dataclass
-class _Seen:
-    """Attempts at a task since Python was started."""
-
-    began: float = field(default_factory=time.monotonic)
-    attempts: int = 0
-    hints: int = 0
-
-
-_SEEN: dict[str, _Seen] = {}
+_COUNTS: dict[str, tuple[float, int, int]] = {}
+"""When a task was first checked, how often since then, and the largest number of a hint."""
 
 
 @dataclass(frozen=True)
-class Tallied:
-    """Reply to an answer, with how many attempts and hints it took.
-
-    Parameters
-    ----------
-    reply : Attempt or Review
-    task : str
-        Name of the exercise.
-
-    See Also
-    --------
-    tally : Makes it.
-
-    Examples
-    --------
-    >>> print(Tallied(Attempt(True, "Yes, c."), "second"))
-    Yes, c.
-    """
+class _Tallied:
+    """Reply to an answer, which shows how many attempts and hints it took; see `tally`."""
 
     reply: Attempt | Review
     task: str
@@ -53,34 +28,31 @@ class Tallied:
         """Whether the answer is right, as the reply says."""
         return self.reply.right
 
-    def hint(self, number: int) -> Tallied:
+    def hint(self, number: int) -> _Tallied:
         """Return the reply with a hint, which is counted."""
         hinted = replace(self, reply=self.reply.hint(number))
-        _SEEN[self.task].hints = max(_SEEN[self.task].hints, number)
+        began, attempts, hints = _COUNTS[self.task]
+        _COUNTS[self.task] = began, attempts, max(hints, number)
         return hinted
 
     def __str__(self) -> str:
         return str(self.reply)
 
     def _repr_markdown_(self) -> str:
-        seen = _SEEN.get(self.task)
-        words = self.reply._repr_markdown_()
-        if not seen or not seen.attempts:
-            return words
-        minutes = round((time.monotonic() - seen.began) / 60)
-        return f"{words}\n\n*Task {self.task}: attempt {seen.attempts}, hints {seen.hints}, minutes {minutes}.*"
+        began, attempts, hints = _COUNTS[self.task]
+        minutes = round((time.monotonic() - began) / 60)
+        count = f"\n\n*Task {self.task}: attempt {attempts}, hints {hints}, minutes {minutes}.*" if attempts else ""
+        return self.reply._repr_markdown_() + count
 
 
-def tally(reply: Attempt | Review, task: str) -> Tallied:
+def tally(reply: Attempt | Review, task: str) -> _Tallied:
     """Count an attempt, if there is an answer, and return the reply with the count.
-
-    The count begins anew when Python is started again.
 
     Parameters
     ----------
     reply : Attempt or Review
     task : str
-        Name of the exercise.
+        Name of the exercise.  Its count begins anew when Python is started again.
 
     See Also
     --------
@@ -91,8 +63,7 @@ def tally(reply: Attempt | Review, task: str) -> Tallied:
     >>> tally(Attempt(None, "Choose first."), "second")._repr_markdown_()
     'Choose first.'
     """
-    seen = _SEEN.setdefault(task, _Seen())
-    if isinstance(reply, Review) or reply.right is not None:
-        seen.attempts += 1
-        seen.hints = max(seen.hints, getattr(reply, "hints", 0))
-    return Tallied(reply, task)
+    began, attempts, hints = _COUNTS.get(task, (time.monotonic(), 0, 0))
+    answered = isinstance(reply, Review) or reply.right is not None
+    _COUNTS[task] = began, attempts + answered, max(hints, getattr(reply, "hints", 0))
+    return _Tallied(reply, task)

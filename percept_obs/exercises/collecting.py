@@ -8,10 +8,9 @@ from __future__ import annotations
 import ast
 import csv
 import json
-import math
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from functools import cache
 from pathlib import Path
@@ -20,8 +19,9 @@ from typing import TYPE_CHECKING, Any
 from percept_obs.exercises.attempts import WRITTEN
 from percept_obs.exercises.copies import students_copy
 from percept_obs.exercises.individual import OURS, individual, same_name
-from percept_obs.exercises.marking import LONGEST, Job, marks, named, programs, run
+from percept_obs.exercises.marking import LONGEST, answered, lesson, marks, programs, run
 from percept_obs.exercises.models import notebooks
+from percept_obs.validation import bar
 from percept_obs.validation.kinds import is_real
 
 if TYPE_CHECKING:
@@ -30,10 +30,15 @@ if TYPE_CHECKING:
 LARGEST = 50_000_000
 """Bytes of a notebook."""
 
+POINTS = " (points)"
+"""End of the names of columns that a teacher fills in."""
+
+COUNTS = ("attempts", "hints", "minutes")
+
 
 @dataclass(frozen=True)
-class _Student:
-    """Row of a roster."""
+class Student:
+    """Row of a roster, or a folder that is in none."""
 
     name: str
     folder: Path | None
@@ -41,20 +46,15 @@ class _Student:
     listed: bool = True
 
 
-@dataclass
-class _HandedIn:
-    """A notebook that a student handed in, compared with the copy that was given."""
+@dataclass(frozen=True)
+class Job:
+    """Notebook that a student handed in: whose copy it is, cells altered where they should not be, answers, columns."""
 
-    stem: str
-    late: float  # hours
     copy: str
     altered: list[str]
-    added: int
-    job: Job
-    unread: dict[str, str]
-    texts: dict[str, str]
-    counts: dict[str, tuple[int, int, int]]
-    marks: dict[str, tuple[bool | None, str]] = field(default_factory=dict)
+    notebook: Mapping[str, Any]
+    answers: dict[str, Any]
+    columns: dict[str, Any]
 
 
 def collect(folder: Path, roster: Path | None = None, run_code: bool = False) -> pd.DataFrame:
@@ -84,18 +84,54 @@ def collect(folder: Path, roster: Path | None = None, run_code: bool = False) ->
     """
     import pandas as pd
 
-    students = _students(folder, _roster(roster) if roster else None)
-    found: dict[str, list[_HandedIn]] = {}
-    faults: dict[str, list[str]] = {}
-    for student in students:
-        handed, faults[student.name] = _handed_in(student, run_code)
-        found[student.name] = list(handed.values())
-    every = [each for handed in found.values() for each in handed]
-    for each, verdicts in zip(every, marks([each.job for each in every]), strict=True):
-        each.marks = verdicts
-    names = sorted({each.job.notebook for each in every})
-    rows = [_row(student, found[student.name], faults[student.name], names) for student in students]
+    rows, jobs = [], []
+    for student in students(folder, roster):
+        row: dict[str, Any] = {"student": student.name, "handed in": "missing", "copy": "", "altered": "", "faults": ""}
+        mine: dict[str, Job] = {}
+        files = student.folder.rglob("*.ipynb") if student.folder else ()
+        for file in sorted((f for f in files if ".ipynb_checkpoints" not in f.parts), key=lambda f: f.lstat().st_mtime):
+            try:
+                name, cells, said, shown = read(file)
+                job = compared(student.name, name, cells, said, run_code)
+            except (OSError, ValueError, RecursionError, MemoryError) as error:
+                row["faults"] += f"{file.name}: {str(error) or type(error).__name__}; "
+                continue
+            for task, *counts in WRITTEN.findall(shown):
+                for what, count in zip(COUNTS, map(int, counts), strict=True):
+                    if (label := f"{name[:2]} {task} {what}") in job.columns:
+                        job.columns[label] = max(job.columns[label] or 0, count)
+            late = (file.lstat().st_mtime - student.due.timestamp()) / 3600 if student.due else 0
+            row["handed in"] = f"late by {late:.1f} h" if late > 0 else "yes"
+            mine[name] = job
+        row["handed in"] += "" if student.listed else ", not in the roster"
+        row["copy"] = "; ".join(f"{name[:2]}: {job.copy}" for name, job in mine.items())
+        row["altered"] = "; ".join(f"{name[:2]}: {', '.join(job.altered)}" for name, job in mine.items() if job.altered)
+        rows.append(row)
+        jobs.append(mine)
+    names = sorted({name for mine in jobs for name in mine})
+    for name in names:
+        _mark(name, [mine[name] for mine in jobs if name in mine])
+    for row, mine in zip(rows, jobs, strict=True):
+        columns = {
+            key: entry for name in names for key, entry in (mine[name].columns if name in mine else blank(name)).items()
+        }
+        row["right"] = sum(entry == "right" for key, entry in columns.items() if key.count(" ") == 1)
+        row |= {what: sum(entry or 0 for key, entry in columns.items() if key.endswith(f" {what}")) for what in COUNTS}
+        row |= columns
     return pd.DataFrame(rows).map(harmless)
+
+
+def _mark(name: str, jobs: Sequence[Job]) -> None:
+    """Write marks into the columns of those who answered tasks of a notebook."""
+    try:
+        names = lesson(notebooks()[name]) if any(job.answers for job in jobs) else {}
+    except Exception as error:
+        for job in jobs:
+            job.columns.update({f"{name[:2]} {task}": f"unread: no run here: {error}" for task in job.answers})
+        return
+    for job in bar(jobs, name):
+        for task, right, reply in marks(job.notebook, names, job.answers) if job.answers else ():
+            job.columns[f"{name[:2]} {task}"] = {True: "right", False: "wrong", None: f"unread: {reply}"}[right]
 
 
 def harmless(entry: Any) -> Any:
@@ -104,60 +140,56 @@ def harmless(entry: Any) -> Any:
 
 
 def filled_in(table: pd.DataFrame, earlier: pd.DataFrame) -> pd.DataFrame:
-    """Return a table with what a teacher has written into an earlier one: the rubric, and columns of his own."""
+    """Return a table with what a teacher has written into an earlier one: points, and columns of his own."""
     own = [name for name in earlier if name not in table or name.endswith(POINTS)]
     kept = earlier.set_index("student")[own].reindex(table["student"]).fillna("")
     return table.assign(**{name: kept[name].to_numpy() for name in own})
 
 
-POINTS = " (points)"
-"""End of the names of columns for a teacher."""
-
-
-def _roster(path: Path) -> list[dict[str, str]]:
-    with open(path, encoding="utf-8-sig", newline="") as file:
-        rows = [{k: (v or "").strip() for k, v in row.items() if k} for row in csv.DictReader(file)]
+def students(folder: Path, roster: Path | None) -> list[Student]:
+    """Return the students of a roster, and whoever else has handed in."""
+    folders = sorted(f for f in folder.iterdir() if f.is_dir() and not f.is_symlink()) if folder.is_dir() else []
+    if not folders:
+        raise ValueError(f"{folder} holds no folders; put each student's notebooks into one with the student's name")
+    if roster is None:
+        return [Student(f.name, f) for f in folders]
+    with open(roster, encoding="utf-8-sig", newline="") as file:
+        rows = [{key: (entry or "").strip() for key, entry in row.items() if key} for row in csv.DictReader(file)]
     names = [same_name(row.get("student", "")) for row in rows]
     if not rows or "" in names or len(set(names)) < len(names):
-        raise ValueError(f"{path} needs a column student with a name in each row, each once; its first line names it")
-    return rows
-
-
-def _students(folder: Path, roster: Sequence[Mapping[str, str]] | None) -> list[_Student]:
-    """Return the students of a roster, and whoever else has handed in."""
-    if not folder.is_dir():
-        raise ValueError(f"{folder} is no folder; name the one that holds a folder for each student")
-    folders = sorted(each for each in folder.iterdir() if each.is_dir() and not each.is_symlink())
-    if not folders:
-        raise ValueError(f"{folder} holds no folder; put each student's notebooks into one with the student's name")
-    students = []
-    for row in roster or ():
-        known = same_name(row.get("folder", "") or row["student"])
-        own = [f for f in folders if same_name(f.name) == known or same_name(f.name).startswith(f"{known}_")]
+        raise ValueError(f"{roster} needs a first line with the word student, and below it each name once")
+    found = []
+    for row in rows:
+        known = same_name(row.get("folder") or row["student"])
+        own = (f for f in folders if same_name(f.name) == known or same_name(f.name).startswith(f"{known}_"))
         try:
             due = datetime.fromisoformat(row["due"]) if row.get("due") else None
         except ValueError:
             raise ValueError(f"{row['student']} is due at {row['due']!r}; write it as 2026-03-01T12:00") from None
-        students.append(_Student(row["student"], own[0] if own else None, due))
-    taken = {student.folder for student in students}
-    return students + [_Student(f.name, f, None, roster is None) for f in folders if f not in taken]
+        found.append(Student(row["student"], next(own, None), due))
+    return found + [Student(f.name, f, None, False) for f in folders if all(s.folder != f for s in found)]
 
 
-def _handed_in(student: _Student, run_code: bool) -> tuple[dict[str, _HandedIn], list[str]]:
-    """Return a student's notebooks, the last one of each, and what cannot be read."""
-    found, faults = {}, []
-    files = (f for f in student.folder.rglob("*.ipynb") if ".ipynb_checkpoints" not in f.parts) if student.folder else ()
-    for file in sorted(files, key=lambda f: f.lstat().st_mtime):
-        try:
-            notebook = _read(file)
-            cells = {cell["id"]: cell["source"] for cell in notebook["cells"]}
-            name = max(notebooks(), key=lambda name: len(_ids()[name] & set(cells)))
-            if len(_ids()[name] & set(cells)) < len(_ids()[name]) / 3:
-                raise ValueError("none of the course's notebooks")
-            found[name] = _compared(student, name, notebook, cells, file.lstat().st_mtime, run_code)
-        except (OSError, ValueError, RecursionError, MemoryError) as error:
-            faults.append(f"{file.name}: {str(error) or type(error).__name__}")
-    return found, faults
+def read(file: Path) -> tuple[str, dict[str, str], str, str]:
+    """Return the name of a notebook that somebody wrote, its cells, whose copy it says to be, and its outputs.
+
+    A ValueError says why it is none of the course's.
+    """
+    if file.is_symlink() or not file.is_file() or file.lstat().st_size > LARGEST:
+        raise ValueError(f"not a plain file of at most {LARGEST // 10**6} MB")
+    notebook = json.loads(file.read_bytes())
+    cells = notebook.get("cells") if isinstance(notebook, dict) else None
+    if not isinstance(cells, list) or not all(isinstance(cell, dict) for cell in cells):
+        raise ValueError("not a notebook")
+    sources = [(str(c.get("id")), c.get("source", "")) for c in cells]
+    texts = {key: "".join(map(str, text)) if isinstance(text, list) else str(text) for key, text in sources}
+    name = max(_ids(), key=lambda name: len(_ids()[name] & set(texts)))
+    if len(_ids()[name] & set(texts)) < len(_ids()[name]) / 3:
+        raise ValueError("none of the course's notebooks, or its cells have lost their ids")
+    said = notebook.get("metadata")
+    ours = said.get(OURS) if isinstance(said, dict) else None
+    shown = " ".join(str(cell.get("outputs", "")) for cell in cells)
+    return name, texts, str(ours.get("student", "")) if isinstance(ours, dict) else "", shown
 
 
 @cache
@@ -165,67 +197,57 @@ def _ids() -> dict[str, set[str]]:
     return {name: {cell["id"] for cell in students_copy(shipped)["cells"]} for name, shipped in notebooks().items()}
 
 
-def _read(file: Path) -> dict[str, Any]:
-    """Return a notebook that somebody wrote, with its cells as text; a ValueError says why it is none."""
-    if file.is_symlink() or not file.is_file() or file.lstat().st_size > LARGEST:
-        raise ValueError(f"not a plain file of at most {LARGEST // 10**6} MB")
-    notebook = json.loads(file.read_bytes())
-    cells = notebook.get("cells") if isinstance(notebook, dict) else None
-    if not isinstance(cells, list) or not all(isinstance(cell, dict) for cell in cells):
-        raise ValueError("not a notebook")
-    read = []
-    for k, cell in enumerate(cells):
-        source = cell.get("source", "")
-        text = "".join(map(str, source)) if isinstance(source, list) else str(source)
-        read.append({"id": str(cell.get("id", k)), "source": text.replace("\r\n", "\n").strip()})
-    said = notebook.get("metadata")
-    ours = said.get(OURS) if isinstance(said, dict) else None
-    shown = " ".join(str(cell.get("outputs", "")) for cell in cells)
-    return {"cells": read, "student": str(ours.get("student", "")) if isinstance(ours, dict) else "", "shown": shown}
+def blank(name: str) -> dict[str, Any]:
+    """Return the columns of a notebook that was not handed in."""
+    columns: dict[str, Any] = {}
+    for task in (task for task, *_ in programs(notebooks()[name]) if task):
+        label = f"{name[:2]} {task}"
+        columns |= {label: "missing", f"{label} answer": ""} | {f"{label} {what}": None for what in COUNTS}
+    for task, criteria in questions(name):
+        label = f"{name[:2]} {task}"
+        columns |= {f"{label} text": ""} | {f"{label}: {criterion}{POINTS}": "" for criterion in criteria}
+    return columns
 
 
-def _compared(
-    student: _Student, name: str, notebook: Mapping[str, Any], cells: Mapping[str, str], written: float, run_code: bool
-) -> _HandedIn:
-    shipped, claimed = notebooks()[name], same_name(notebook["student"])
-    copy = "own" if claimed == same_name(student.name) else f"of {notebook['student']}" if claimed else "common"
-    task_name = student.name if claimed else ""
-    mine = individual(shipped, student.name) if claimed else shipped
-    given = {cell["id"]: "".join(cell["source"]).strip() for cell in students_copy(mine)["cells"]}
-    checks = [(task, check) for task, _, check in programs(mine) if task]
-    free = {f"{cell['id']}-answer-1": cell["id"].removesuffix("-model") for cell, _ in _questions(shipped)}
-    open_ = {task for task, _ in checks} | {id for id in given if "-answer-" in id}
-    altered = [id if id in cells else f"{id} (gone)" for id in given if id not in open_ and cells.get(id) != given[id]]
-    answers, unread = {}, {}
-    for task, check in checks:
-        source, answer = cells.get(task, ""), named(check)
-        try:
-            value = literal(source, answer)
-            if value is None and run_code:
-                value = literal(f"{answer} = {run(source, answer, mine, task)}", answer)
-            if value is ...:
-                unread[task] = "empty"
-            elif value is None or not _fits(value, check):
-                raise ValueError("its cell gives no plain text or number")
-            else:
-                answers[task] = value
-        except ValueError as error:
-            unread[task] = f"unread: {error}"
-    counts: dict[str, tuple[int, int, int]] = {}
-    for task, *numbers in WRITTEN.findall(notebook["shown"]):
-        counts[task] = max(counts.get(task, (0, 0, 0)), tuple(int(n[:6]) for n in numbers))
-    late = (written - student.due.timestamp()) / 3600 if student.due else 0.0
-    texts = {task: _text(cells.get(id, "")) for id, task in free.items()}
-    extra = len(notebook["cells"]) - len(set(cells) & set(given))
-    job = Job(task_name, name, answers)
-    return _HandedIn(name[:2], late, copy, altered, extra, job, unread, texts, counts)
-
-
-def _questions(notebook: Mapping[str, Any]) -> Iterator[tuple[Mapping[str, Any], list[str]]]:
-    """Yield the cells of model answers, with the criteria by which answers are judged."""
-    for cell in notebook["cells"]:
+def questions(name: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield a notebook's questions that are answered in words, and the criteria for their answers."""
+    for cell in notebooks()[name]["cells"]:
         if cell["cell_type"] == "markdown" and "solution" in cell["metadata"].get("tags", ()):
-            yield cell, cell["metadata"].get(OURS, {}).get("rubric", ["answer"])
+            yield cell["id"].removesuffix("-model"), cell["metadata"].get(OURS, {}).get("rubric", ["answer"])
+
+
+def compared(student: str, name: str, cells: Mapping[str, str], said: str, run_code: bool) -> Job:
+    """Return what a student handed in, compared with what was given; its answers are to be marked."""
+    own = bool(same_name(said))
+    copy = "common" if not own else "own" if same_name(said) == same_name(student) else f"of {said}"
+    mine = individual(notebooks()[name], student) if own else notebooks()[name]
+    given = {cell["id"]: "".join(cell["source"]) for cell in students_copy(mine)["cells"]}
+    checks = {task: check for task, _, check in programs(mine) if task}
+    same = {key for key, text in given.items() if _plain(text) == _plain(cells.get(key, ""))}
+    free = {key for key in given if key in checks or "-answer-" in key}
+    altered = [key if key in cells else f"{key} (gone)" for key in given if key not in same | free]
+    answers, part = {}, blank(name)
+    for task, check in checks.items():
+        try:
+            value = literal(cells.get(task, ""), answered(check)[1])
+            if value is None and run_code:
+                value = literal(f"answer = {run(cells[task], mine, task)}", "answer")
+            if value is not ... and not _fits(value, answered(check)[0]):
+                raise ValueError("its cell gives no plain text or number")
+        except ValueError as error:
+            part[f"{name[:2]} {task}"] = f"unread: {error}"
+            continue
+        part[f"{name[:2]} {task}"] = "empty"  # until it is marked
+        if value is not ...:
+            answers[task] = value
+            part[f"{name[:2]} {task} answer"] = str(value)
+    for task, _ in questions(name):
+        part[f"{name[:2]} {task} text"] = said_in(cells.get(f"{task}-model-answer-1", ""))
+    return Job(copy, altered, mine, answers, part)
+
+
+def _plain(text: str) -> str:
+    return text.replace("\r\n", "\n").strip()
 
 
 def _parsed(source: str) -> list[ast.stmt]:
@@ -240,73 +262,33 @@ def _parsed(source: str) -> list[ast.stmt]:
 
 
 def literal(source: str, name: str) -> Any:
-    """Return the last literal to which a program sets a name, without running it: dots if there is none.
-
-    None if what it is set to is no literal; a ValueError if the program cannot be read.
-    """
+    """Return the last value that a program gives to a name, without running it: dots if none, None if no literal."""
     value: Any = ...
     for statement in _parsed(source):
-        if isinstance(statement, ast.Assign) and any(isinstance(t, ast.Name) and t.id == name for t in statement.targets):
+        if isinstance(statement, ast.Assign) and name in map(ast.unparse, statement.targets):
             try:
                 value = ast.literal_eval(statement.value)
-            except (ValueError, TypeError, SyntaxError, RecursionError, MemoryError):
+            except (ValueError, TypeError, RecursionError, MemoryError):
                 value = None
     return value
 
 
-def _text(source: str) -> str:
+def said_in(source: str) -> str:
     """Return the sentence that a program hands to `model_answer`, without running it."""
     try:
-        calls = [node for statement in _parsed(source) for node in ast.walk(statement) if isinstance(node, ast.Call)]
-        said = [ast.literal_eval(call.args[0]) for call in calls if call.args and ast.unparse(call.func) == "model_answer"]
+        calls = (
+            node for part in _parsed(source) for node in ast.walk(part) if isinstance(node, ast.Call) and node.args
+        )
+        said = [ast.literal_eval(call.args[0]) for call in calls if ast.unparse(call.func) == "model_answer"]
     except ValueError:
         return ""
     return next((text for text in said if isinstance(text, str)), "")
 
 
-def _fits(value: Any, check: str) -> bool:
-    """Whether an answer is of the kind that a check takes: text, or finite numbers and what holds them."""
-    if isinstance(value, list | tuple | dict):
-        keys = all(isinstance(key, str) for key in value) if isinstance(value, dict) else True
-        parts = list(value.values()) if isinstance(value, dict) else value
-        return keys and len(parts) <= 20 and all(not isinstance(v, list | tuple | dict) and _fits(v, check) for v in parts)
-    if check.startswith("reach("):
-        return is_real(value) and abs(value) < 1e12 and math.isfinite(value)
-    return isinstance(value, str)
-
-
-def _row(student: _Student, handed: Sequence[_HandedIn], faults: list[str], names: Sequence[str]) -> dict[str, Any]:
-    """Return a row of the table, whose columns are the same for all students."""
-    by_name = {each.job.notebook: each for each in handed}
-    late = max((each.late for each in handed), default=0.0)
-    state = "missing" if not handed else f"late by {late:.1f} h" if late > 0 else "yes"
-    told: Callable[[Callable[[_HandedIn], str]], str] = lambda what: "; ".join(
-        f"{each.stem}: {words}" for each in handed if (words := what(each))
-    )
-    row: dict[str, Any] = {
-        "student": student.name,
-        "handed in": state if student.listed else f"{state}, not in the roster",
-        "copy": told(lambda each: each.copy),
-        "altered": told(lambda each: ", ".join(each.altered)),
-        "cells added": sum(each.added for each in handed),
-        "cannot be read": "; ".join(faults),
-    }
-    totals = dict.fromkeys(("right", "tasks", "attempts", "hints", "minutes"), 0)
-    row |= totals
-    for name in names:
-        shipped, one = notebooks()[name], by_name.get(name)
-        for task in (task for task, *_ in programs(shipped) if task):
-            right, reply = one.marks.get(task, (None, "")) if one else (None, "")
-            said = one.unread.get(task) if one else "missing"
-            words = said or {True: "right", False: "wrong", None: f"unread: {reply}"}[right]
-            counts = one.counts.get(task, (None, None, None)) if one else (None, None, None)
-            label = f"{name[:2]} {task}"
-            row |= {label: words, f"{label} answer": str(one.job.answers.get(task, "")) if one else ""}
-            row |= dict(zip((f"{label} {what}" for what in ("attempts", "hints", "minutes")), counts, strict=True))
-            for what, count in zip(totals, (right is True, 1, *counts), strict=True):
-                row[what] += count or 0
-        for cell, criteria in _questions(shipped):
-            task = cell["id"].removesuffix("-model")
-            row[f"{name[:2]} {task}"] = one.texts.get(task, "") if one else ""
-            row |= dict.fromkeys((f"{name[:2]} {task}: {criterion}{POINTS}" for criterion in criteria), "")
-    return row
+def _fits(value: Any, function: str) -> bool:
+    """Whether an answer is of the kind that a check takes: text, or numbers, or a few of either."""
+    if isinstance(value, dict):
+        return all(isinstance(key, str) for key in value) and _fits(list(value.values()), function)
+    if isinstance(value, list | tuple):
+        return len(value) <= 20 and not any(isinstance(v, list | tuple | dict) or not _fits(v, function) for v in value)
+    return is_real(value) and abs(value) < 1e12 if function == "reach" else isinstance(value, str)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import unicodedata
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from hashlib import sha256
@@ -18,37 +18,31 @@ _OPTION = re.compile(r"^- ([a-z]): (.*)$", re.MULTILINE)
 
 
 def same_name(student: str) -> str:
-    """Return a name without spaces around it, in small letters, however its accents are typed."""
+    """Return a name in small letters, without spaces around it, however its accents are typed."""
     return unicodedata.normalize("NFKC", student).strip().casefold()
 
 
 def drawn(student: str, what: str, count: int) -> int:
     """Return a number below a count that follows from a name, the same on every machine and in every version."""
-    return int.from_bytes(sha256(f"{same_name(student)}\n{what}".encode()).digest()) % count
+    return int.from_bytes(sha256(f"{same_name(student)}\n{what}".encode()).digest(), "big") % count
 
 
-def replaced(rules: Mapping[str, Sequence[Any]], student: str, what: str) -> list[tuple[str, str]]:
-    """Return what is replaced by what in the texts of a task: of each number the places where it stands.
+def with_numbers(text: str, rules: Mapping[str, Sequence[str]], student: str, what: str) -> str:
+    """Return a text with numbers that follow from a name.
 
-    A rule is ``{"8": ["6", "10", "0.1", "gain={}", "gain of {} "]}``: a number, from, to, step, and its places.
+    Rules say for a number from where to where it goes, in which steps, and the places where it stands:
+    ``{"8": ["6", "10", "0.1", "gain={}", "gain of {} "]}``.
     """
-    pairs = []
     for number, (low, high, step, *places) in rules.items():
         count = int((Decimal(high) - Decimal(low)) / Decimal(step)) + 1
-        own = Decimal(low) + drawn(student, f"{what} {number}", count) * Decimal(step)
-        pairs += [(place.replace("{}", number), place.replace("{}", f"{own.normalize():f}")) for place in places]
-    return pairs
-
-
-def put(text: str, pairs: Iterable[tuple[str, str]]) -> str:
-    """Return a text with all pairs replaced."""
-    for old, new in pairs:
-        text = text.replace(old, new)
+        own = (Decimal(low) + drawn(student, f"{what} {number}", count) * Decimal(step)).normalize()
+        for place in places:
+            text = text.replace(place.replace("{}", number), place.replace("{}", f"{own:f}"))
     return text
 
 
 def individual(notebook: Mapping[str, Any], student: str) -> dict[str, Any]:
-    """Return a notebook whose exercises are a student's own; solutions and checks are those of the student.
+    """Return a notebook whose exercises are a student's own: tasks, solutions and checks.
 
     Parameters
     ----------
@@ -68,8 +62,8 @@ def individual(notebook: Mapping[str, Any], student: str) -> dict[str, Any]:
 
     Notes
     -----
-    The task's cell says in its metadata what can be another: numbers with their ranges and places, and letters with the
-    range of a whole factor.  Options to choose from stand in an order of the student's own.
+    The cell of a task says in its metadata what is a student's own: "numbers", with their ranges and places, and
+    "letters", with the range of a whole factor.  Options to choose from stand in an order of the student's own.
 
     Examples
     --------
@@ -83,70 +77,71 @@ def individual(notebook: Mapping[str, Any], student: str) -> dict[str, Any]:
         raise ValueError("an empty name has no tasks; give a student's name or number")
     cells, task = [], None
     for cell in notebook["cells"]:
-        tags = set(cell["metadata"].get("tags", ()))
+        tags, text = set(cell["metadata"].get("tags", ())), "".join(cell["source"])
         if cell["cell_type"] == "markdown" and "exercise" in tags:
-            task = _task(cell, student)
+            task = _Task.of(cell, student)
         if task and tags & {"exercise", "hint", "solution"}:
-            cell = {**cell, "source": task.text(cell, tags).splitlines(keepends=True)}
+            text = with_numbers(text, task.numbers, student, task.name)
+            change = task.changes.get((cell["cell_type"], *tags), str)
+            cell = {**cell, "source": change(text).splitlines(keepends=True)}
         cells.append(cell)
-    said = {**notebook["metadata"], OURS: {"student": student.strip()}}
-    return {**notebook, "metadata": said, "cells": cells}
+    return {**notebook, "metadata": {**notebook["metadata"], OURS: {"student": student.strip()}}, "cells": cells}
 
 
 @dataclass(frozen=True)
 class _Task:
     """A student's own version of an exercise."""
 
-    numbers: list[tuple[str, str]]
+    name: str
+    numbers: Mapping[str, Sequence[str]]
     factors: Mapping[str, int]
-    order: str
+    order: str  # of the shipped options
 
-    def text(self, cell: Mapping[str, Any], tags: set[str]) -> str:
-        """Return the text of one of the exercise's cells in this version."""
-        text = put("".join(cell["source"]), self.numbers)
-        if cell["cell_type"] == "markdown":
-            return self._words(text) if "exercise" in tags else text
-        return self._solution(text) if "solution" in tags else self._check(text)
+    @classmethod
+    def of(cls, cell: Mapping[str, Any], student: str) -> _Task:
+        """Return a student's version of the exercise that a cell begins."""
+        rules, name = cell["metadata"].get(OURS, {}), cell.get("id", "")
+        factors, order, left = {}, "", [letter for letter, _ in _OPTION.findall("".join(cell["source"]))]
+        for letter, (low, high) in rules.get("letters", {}).items():
+            choices = [factor for factor in range(low, high + 1) if factor]
+            factors[letter] = choices[drawn(student, f"{name} {letter}", len(choices))]
+        while left:
+            order += left.pop(drawn(student, f"{name} option {len(left)}", len(left)))
+        return cls(name, rules.get("numbers", {}), factors, order)
 
-    def _words(self, text: str) -> str:
-        options = dict(_OPTION.findall(text))
-        shown = iter(zip(sorted(self.order), self.order, strict=True))
-        text = _OPTION.sub(lambda _: "- {}: {}".format(*((own := next(shown))[0], options[own[1]])), text)
-        if not self.factors:
-            return text
-        own = ", ".join(f"`{factor} {letter}` for `{letter}`" for letter, factor in self.factors.items())
-        return f"{text}\n\n**Yours:** put {own} wherever the task and its hint have that letter. Your answer has it so, too."
+    @property
+    def changes(self) -> Mapping[tuple[str, ...], Any]:
+        """What changes the text of a cell, by its kind and tag."""
+        return {
+            ("markdown", "exercise"): self.words,
+            ("code", "solution"): self.solution,
+            ("code", "exercise"): self.check,
+        }
 
-    def _solution(self, text: str) -> str:
-        place = {old: new for new, old in zip(sorted(self.order), self.order, strict=True)}
+    def words(self, text: str) -> str:
+        """Return the task with its options in order, and with what stands for each letter."""
+        options, own = dict(_OPTION.findall(text)), iter(zip(sorted(self.order), self.order, strict=True))
+        text = _OPTION.sub(lambda _: "- {}: {}".format(*((pair := next(own))[0], options[pair[1]])), text)
+        put = ", ".join(f"`{factor} {letter}` for `{letter}`" for letter, factor in self.factors.items())
+        return f"{text}\n\n**Yours:** put {put} in the task and its hint. Your answer has it so, too." if put else text
+
+    def solution(self, text: str) -> str:
+        """Return the solution with the student's letter of an option, or with factors before letters of a formula."""
+        place = dict(zip(self.order, sorted(self.order), strict=True))
         text = re.sub(r'"([a-z])"$', lambda found: f'"{place.get(found[1], found[1])}"', text)
-        names = "|".join(self.factors)
-        return re.sub(rf"\b({names})\b", lambda found: f"({self.factors[found[1]]} {found[1]})", text) if names else text
+        pattern = rf"\b({'|'.join(self.factors) or '(?!)'})\b"
+        return re.sub(pattern, lambda found: f"({self.factors[found[1]]} {found[1]})", text)
 
-    def _check(self, text: str) -> str:
-        """Return a check whose last call has the options in the student's order, and the letters with their factors."""
-        call = ast.parse(text).body[-1]
-        if not (isinstance(call, ast.Expr) and isinstance(call.value, ast.Call)):
+    def check(self, text: str) -> str:
+        """Return the check whose last call has the options in order, or knows the factors of letters."""
+        last = ast.parse(text).body[-1]
+        if not (self.order or self.factors) or not isinstance(last, ast.Expr) or not isinstance(last.value, ast.Call):
             return text
-        keywords = call.value.keywords
         if self.order:
-            kept = {word.arg: word.value for word in keywords}
-            pairs = zip(sorted(self.order), self.order, strict=True)
-            call.value.keywords = [ast.keyword(new, kept[old]) for new, old in pairs]
+            kept = {str(word.arg): word.value for word in last.value.keywords}
+            last.value.keywords = [
+                ast.keyword(new, kept[old]) for new, old in zip(sorted(kept), self.order, strict=True)
+            ]
         if self.factors:
-            keywords.append(ast.keyword("letters", ast.Constant(dict(self.factors))))
-        before = text.splitlines(keepends=True)[: call.lineno - 1]
-        return "".join((*before, ast.unparse(call)))
-
-
-def _task(cell: Mapping[str, Any], student: str) -> _Task:
-    """Return a student's version of the exercise that a cell begins."""
-    rules, what = cell["metadata"].get(OURS, {}), cell.get("id", "")
-    letters = {}
-    for letter, (low, high) in rules.get("letters", {}).items():
-        factors = [factor for factor in range(low, high + 1) if factor]
-        letters[letter] = factors[drawn(student, f"{what} {letter}", len(factors))]
-    order, left = "", [letter for letter, _ in _OPTION.findall("".join(cell["source"]))]
-    while left:
-        order += left.pop(drawn(student, f"{what} option {len(left)}", len(left)))
-    return _Task(replaced(rules.get("numbers", {}), student, what), letters, order)
+            last.value.keywords.append(ast.keyword("letters", ast.parse(repr(self.factors), mode="eval").body))
+        return "".join((*text.splitlines(keepends=True)[: last.lineno - 1], ast.unparse(last)))
