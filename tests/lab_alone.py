@@ -15,8 +15,8 @@ import bundle from "/lab.js";
 window.refused = [];
 document.addEventListener("securitypolicyviolation", (event) => window.refused.push(event.violatedDirective));
 const binary = (text) => new DataView(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
-const films = Object.entries(STATE.frames).map(([name, film]) => [name, { ...film, images: film.images.map(binary) }]);
-const state = { ...STATE, texts: binary(STATE.texts), frames: Object.fromEntries(films) };
+const frames = STATE.frames.map((film) => ({ ...film, images: film.images.map(binary) }));
+const state = { ...STATE, texts: binary(STATE.texts), frames };
 const listeners = {};
 const TOLD = ["asked", "settings", "summary"];
 window.held = null;  // a list, while answers are to be held back
@@ -54,8 +54,8 @@ def opened(browser, lab, policy=None, answers=None, face="workbench", **options)
     }
     told["face"] = face
     told["texts"] = base64.b64encode(lab.texts).decode()
-    films = getattr(lab, "frames", {}).items()
-    told["frames"] = {n: {**f, "images": [base64.b64encode(i).decode() for i in f["images"]]} for n, f in films}
+    films = getattr(lab, "frames", [])
+    told["frames"] = [{**f, "images": [base64.b64encode(i).decode() for i in f["images"]]} for f in films]
     bundle = (FRONT / "lab.js").read_text()
     told["_esm"] = bundle
     files = {

@@ -1,8 +1,9 @@
-"""Frames are PNG files, whatever they are made of, and a recording can be drawn as a film."""
+"""Frames are PNG or JPEG files, whatever they are made of, and a recording can be drawn as a film."""
 
 import matplotlib.image
 import numpy as np
 import pytest
+from PIL.Image import fromarray
 
 from percept_obs import Camera, Scenario, affine, pinhole, record
 from percept_obs.labs import observer_lab
@@ -40,6 +41,15 @@ def test_arrays_paths_and_a_folder_are_the_same_frames(tmp_path):
     assert Frames(sorted(folder.iterdir()), [0, 1, 2], EXTENT).images == frames.images
 
 
+def test_files_and_bytes_of_jpeg_are_kept_as_they_are(tmp_path):
+    files = []
+    for k, name in enumerate(("a.jpg", "b.JPEG", "c.png")):
+        fromarray((255 * RAMP).astype(np.uint8)).save(tmp_path / name)
+        files.append((tmp_path / name).read_bytes())
+        (tmp_path / f"{k}.txt").write_text("no frame")
+    assert Frames(tmp_path, [0, 1, 2], EXTENT).images == Frames(files, [0, 1, 2], EXTENT).images == tuple(files)
+
+
 def test_what_is_no_film_is_refused_with_the_reason(tmp_path, monkeypatch):
     other = tmp_path / "a.png"
     other.write_bytes(b"GIF89a")
@@ -48,8 +58,9 @@ def test_what_is_no_film_is_refused_with_the_reason(tmp_path, monkeypatch):
         ([RAMP, RAMP], [1.0, 1.0], EXTENT, "give each frame a time, increasing"),
         ([RAMP], [0.0], (0, 0, 1, 2), "give y1 of left and right"),
         ([np.zeros(3)], [0.0], EXTENT, r"frame 1 has the shape \(3,\)"),
-        ([other], [0.0], EXTENT, "is no PNG file; convert it"),
-        (tmp_path / "nowhere", [0.0], EXTENT, "holds no .png files"),
+        ([other], [0.0], EXTENT, "a.png', is no PNG or JPEG file; convert it"),
+        ([b"GIF89a"], [0.0], EXTENT, "frame 1, is no PNG or JPEG file"),
+        (tmp_path / "nowhere", [0.0], EXTENT, "holds no .png or .jpg files"),
     ):
         with pytest.raises(ValueError, match=reason):
             Frames(images, time, extent)
@@ -78,7 +89,7 @@ def test_a_drawn_ball_is_where_the_point_is_seen_and_looms(film, tmp_path):
 
 def test_a_lab_takes_frames_of_its_own_recordings_only(film):
     drawn = render(film, count=3, size=20)
-    (shown,) = observer_lab(film, frames=drawn).frames.values()
+    (shown,) = observer_lab(film, frames=drawn).frames
     assert shown["time"] == drawn.time.tolist()
     with pytest.raises(ValueError, match="which is no recording of this lab"):
         observer_lab(frames=drawn)

@@ -1,14 +1,11 @@
 """A motion is typed in the page: Python reads it, the page follows; a bad one, or no Python, is told in a sentence."""
 
-import numpy as np
 import pytest
 from lab_alone import DRAWN, following
-from lab_browser import control, painted
+from lab_browser import control
 from test_lab_open import CALM, MOTION, cubic, slanted
 
-from percept_obs import Camera, Scenario, affine, pinhole, record
 from percept_obs.labs import observer_lab, points_lab, structure_lab
-from percept_obs.recording import Frames, render
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -63,25 +60,3 @@ def test_without_python_the_field_says_so_and_the_lab_goes_on(show):
     page.evaluate("() => [...window.perceptObsLabs][0].change({ b: [0.2, 0.1, 0.1] }, true)")
     page.wait_for_function(DRAWN)
     assert page.evaluate("() => window.refused") == []
-
-
-PIXEL = """() => { const c = document.querySelector("figure.image-plane canvas");
-    const d = c.getContext("2d").getImageData(c.width / 2 - 40, c.height / 2 - 40, 80, 80).data;
-    let sum = 0; for (let k = 0; k < d.length; k += 4) sum += d[k] * d[k + 3] / 255; return sum / (d.length / 4); }"""
-
-
-def test_frames_stand_behind_the_track_of_ones_own_recording(show, tmp_path):
-    motion = affine(np.zeros((3, 3)), [0.1, 0.0, -0.2])
-    film = record(Scenario("walk", motion, (-0.4, 0.1, 3.0), 4.0, pinhole()), camera=Camera(0.05))
-    drawn = render(film, count=9, size=64)
-    for k, image in enumerate(drawn.images):
-        (tmp_path / f"{k}.png").write_bytes(image)
-    lab = observer_lab(film, frames=Frames(tmp_path, drawn.time, drawn.extent))
-    page = show(lab)
-    page.wait_for_function("() => [...[...window.perceptObsLabs][0].planes[0].film.ready.values()].some(Boolean)")
-    page.wait_for_function(DRAWN)
-    painted(page)
-    assert page.evaluate(PIXEL) > 40
-    kept = "() => [...[...window.perceptObsLabs][0].planes[0].film.ready.keys()].map((key) => key.split(' ').at(-1))"
-    page.evaluate("() => [...window.perceptObsLabs][0].point(3.9)")
-    page.wait_for_function(f"() => ({kept})().includes('7')")

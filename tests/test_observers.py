@@ -238,7 +238,8 @@ def test_every_gain_lies_in_its_range_and_says_what_it_does(make):
         assert gain.low <= gain.value <= gain.high
         assert gain.meaning
         assert gain.unit
-        assert f"\n{gain.name} : float\n    {gain.symbol}, {gain.meaning}" in make.__doc__
+        assert f"{gain.meaning[1:]} ({gain.symbol}" in make.__doc__
+        assert inspect.signature(make).parameters[gain.name].default == gain.value
     for option in make.options:
         assert f"\n{option.name} : " in make.__doc__
         assert inspect.signature(make).parameters[option.name].default == option.value
@@ -249,7 +250,7 @@ def test_every_gain_lies_in_its_range_and_says_what_it_does(make):
 
 def test_options_may_be_named_or_not_and_no_gain_may_go_without_its_name():
     assert smo(ONE, "sign", bound=3) == smo(ONE, switch="sign", bound=3)
-    assert repr(smo) == "sliding_mode(form, switch='fraction', **gains)"
+    assert repr(smo).startswith("sliding_mode(form, switch='fraction', *, hidden_gain=5.0, adaptation=10.0, ")
     with pytest.raises(TypeError, match="takes 1 options, not 2; name the gains"):
         smo(ONE, "sign", 5)
 

@@ -96,18 +96,21 @@ def test_every_link_leads_somewhere(pages):
                 assert unquote(place) in found[to].places, f"{path} leads to {target}"
 
 
+def complaints_of(page):
+    """A list of what a page will complain about, and of the addresses that it will ask for."""
+    found = []
+    page.on("pageerror", lambda error: found.append(str(error)))
+    page.on("console", lambda message: found.append(message.text) if message.type in ("error", "warning") else None)
+    page.on("request", lambda request: found.append(request.url) if request.url.startswith("http") else None)
+    return found
+
+
 @pytest.mark.slow
 @pytest.mark.browser
 def test_every_page_opens_without_an_error_or_a_request(pages, browser):
     axe = (FRONT / "node_modules/axe-core/axe.min.js").read_text()
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
-    complaints = []
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on(
-        "console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") else None
-    )
-    page.on("request", lambda request: complaints.append(request.url) if request.url.startswith("http") else None)
-    labs, looked_at = 0, to_look_at(pages)
+    complaints, labs, looked_at = complaints_of(page), 0, to_look_at(pages)
     for path in sorted(pages.rglob("*.html")):
         page.goto(path.as_uri())
         if page.locator("[data-percept-obs]").count():
@@ -120,6 +123,37 @@ def test_every_page_opens_without_an_error_or_a_request(pages, browser):
             assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == [], path
     assert labs
     page.close()
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+def test_a_word_is_found_from_a_disk(pages, browser):
+    page = browser.new_page(offline=True)
+    complaints = complaints_of(page)
+    page.goto((pages / "index.html").as_uri())
+    page.locator(".sidebar-search").fill("excitation")
+    page.keyboard.press("Enter")
+    page.get_by_text("Search finished").wait_for()
+    found = page.locator("#search-results li a")
+    assert found.count() > 5
+    found.first.click()
+    page.locator("#percept_obs\\.figures\\.excitation").wait_for()
+    assert complaints == []
+    page.close()
+
+
+@pytest.mark.slow
+def test_the_reference_shows_what_is_taken_and_raised_and_links_to_what_is_to_be_seen_also(pages):
+    for path in (pages / "reference").glob("percept-obs*.html"):
+        text = path.read_text(encoding="utf-8")
+        assert not re.search(r'<ol class="\w*alpha', text), f"an initial such as R. begins a list in {path}"
+        assert not re.search(r"<em>[a-z]+</em></a>", text), f"a word is taken for a name in {path}"
+        for beside in re.findall(r'admonition seealso">(.*?)</div>', text, re.DOTALL):
+            assert beside.count("xref py py-obj") == beside.count('<a class="reference internal"'), (path, beside)
+    whole = (pages / "reference" / "percept-obs.html").read_text(encoding="utf-8")
+    track = re.search(r'<dt class="sig[^>]* id="percept_obs.track">.*?</section>', whole, re.DOTALL)[0]
+    assert all(f"{title}<span" in track for title in ("Parameters", "Returns", "Raises"))
+    assert 'href="#percept_obs.DoesNotFit"' in track
 
 
 @pytest.mark.slow

@@ -19,14 +19,28 @@ CLOSING = {
 class CannotRead(ValueError):
     """A formula that cannot be read.
 
-    Attributes
+    Parameters
     ----------
+    text : str
+        The formula, or several lines.
     position : int
-        Where, counted in characters from 0.
+        Where, counted in characters from 0; kept as an attribute.
+    message : str
+        Reason, and what can stand there.
 
     See Also
     --------
     percept_obs.check : Raises it.
+
+    Examples
+    --------
+    >>> from percept_obs import check
+    >>> check("y1' = b1 )", "y1' = b1")
+    Traceback (most recent call last):
+        ...
+    percept_obs.checking.refusing.CannotRead: this bracket was never opened
+        y1' = b1 )
+                 ^
     """
 
     def __init__(self, text: str, position: int, message: str) -> None:

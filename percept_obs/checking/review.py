@@ -40,13 +40,20 @@ class Review:
     Parameters
     ----------
     target : Target
+        That the lines are compared with.
     lines : tuple of Judged
+        Each with its verdict.
     hints : int
         How many hints are open; see `hint`.
     seconds : float
         Processor time that may be taken to find all hints.
     unused : tuple of str
         Letters that were given a meaning which no line uses.
+
+    Raises
+    ------
+    ValueError
+        By `hint`, for another number than 1, 2 and 3.
 
     See Also
     --------
@@ -221,7 +228,7 @@ def check(mine: Any, target: Any) -> Review:
 
     See Also
     --------
-    percept_obs.checking.target_of
+    percept_obs.checking.target_of : What formulas a target has.
 
     Notes
     -----

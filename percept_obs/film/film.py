@@ -11,6 +11,7 @@ import numpy as np
 from percept_obs.compile import Array
 from percept_obs.film.board import Board
 from percept_obs.film.lens import Seen
+from percept_obs.film.overlay import write_overlay
 from percept_obs.film.sighting import Sighting
 from percept_obs.film.video import Video
 from percept_obs.observers import Observer, ekf
@@ -30,6 +31,12 @@ if TYPE_CHECKING:
 
 TRIANGULATION = "triangulation"
 """Name of the distance that the whole film tells of a point at rest."""
+
+CUT_OFF = 0.95
+"""Share of a film's pictures below which it is said that some are missing."""
+
+ALIKE = 1.0
+"""Seconds in which the errors of corners stay alike, for they come of blur, compression and the lens."""
 
 BOARD = "board"
 """Name of the distance of a corner of the board."""
@@ -51,6 +58,8 @@ class Film(Footage):
         Smoothed poses and velocities; the world is the board: x along its rows, y down, z into it, in metres.
     findings : tuple of Finding
         Mistakes that the pictures show.
+    focal_deviation : float
+        Standard deviation of the focal length, relative; the distance of the camera from the board has the same.
     board : Board, optional
     seen : Seen, optional
         Poses from the board with their covariance.
@@ -72,6 +81,7 @@ class Film(Footage):
     path: CameraPath
     findings: tuple[Finding, ...]
     sighting: Sighting
+    focal_deviation: float = 0.0
     board: Board | None = None
     seen: Seen | None = None
 
@@ -96,8 +106,12 @@ class Film(Footage):
         )
         if self.seen is not None:
             first += f", with corners to {self.seen.error:.2g} pixels"
+        if self.focal_deviation:
+            first += f" and the focal length to {100 * self.focal_deviation:.1g} %"
         said = [f"{first}; {corners} tracks of the board's corners, {len(self) - corners} of other points."]
         said += [f"{each.sentence[0].upper()}{each.sentence[1:]}: {each.evidence}." for each in self.findings]
+        if len(time) < CUT_OFF * self.video.count:
+            said.append(f"The file speaks of {self.video.count} pictures: it is damaged or cut off.")
         return " ".join(said)
 
     def __repr__(self) -> str:
@@ -113,12 +127,14 @@ class Film(Footage):
     def _noise(self) -> dict[str, float]:
         """Gains of the filter.
 
-        Velocities of poses integrate to the poses again, so that errors of these count like errors of the image.
+        Velocities of poses integrate to the poses again, so that errors of these count like errors of the image.  All
+        change slowly, so that the samples of `ALIKE` count as one.
         """
         variance = float(np.median([each.noise_variance for each in self if each.noise_variance is not None]))
         if self.seen is not None:
             spread = np.median(np.diagonal(self.seen.covariance, axis1=1, axis2=2), axis=0)
             variance += spread[:3].mean() + spread[3:].mean() / self.depth**2
+        variance *= max(1.0, ALIKE / float(np.median(np.diff(self.path.time))))
         return {"noise_variance": variance, "hidden_variance": (1 / self.depth) ** 2}
 
     @cached_property
@@ -148,7 +164,7 @@ class Film(Footage):
             rows.append(
                 {
                     **{"point": recording.source, "seconds": float(recording.elapsed[-1]), "distance": distance},
-                    **{"claimed": 2 * deviation(run)[-1], "reference": reference, "known": known},
+                    **{"claimed": float(self.claimed(run)[-1]), "reference": reference, "known": known},
                     **{"error": abs(distance / known - 1), "trusted": trust.trusted, "why": trust.sentence},
                 }
             )
@@ -156,12 +172,9 @@ class Film(Footage):
 
     def overlay(self, path: PathLike) -> None:
         """Write the film with the distances of its points and their claimed interval drawn in, as MP4."""
-        from percept_obs.film.overlay import write_overlay
+        write_overlay(path, self.video, self.camera, self.runs, [self.claimed(run) for run in self.runs])
 
-        write_overlay(self, path)
-
-
-def deviation(run: Run) -> Array:
-    """Standard deviation of the distance that a filter claims, in metres, shape (K,)."""
-    inverse = run.estimate[:, -1]
-    return np.sqrt(np.maximum(run.covariance[:, -1, -1], 0.0)) / np.maximum(inverse**2, 1e-12)
+    def claimed(self, run: Run) -> Array:
+        """Two standard deviations of the distances of a run, by its filter and by the focal length, in metres."""
+        relative = np.sqrt(np.maximum(run.covariance[:, -1, -1], 0.0)) / np.maximum(run.estimate[:, -1], 1e-12)
+        return np.asarray(2 * np.hypot(relative, self.focal_deviation) * run.distance)

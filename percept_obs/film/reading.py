@@ -23,8 +23,14 @@ from percept_obs.recording.track_table import runs
 from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked
 
+SHORTEST_FILM = 2.0
+"""Seconds that a film lasts at least."""
+
 GAP = 0.3
 """Seconds without a pose, or without a corner of the board, after which another part begins."""
+
+JUMP, FASTEST = 20.0, 5.0
+"""Median steps, and metres a second, beyond which the camera cannot have moved: the film was cut there."""
 
 LARGEST_SPREAD = 2.0
 """Pixels by which samples of a point at rest scatter at most."""
@@ -92,10 +98,12 @@ def read_film(
         raise ValueError("poses are given and no camera; give also camera=PixelCamera(...), in pixels of the film")
     printed = board if isinstance(board, Board) else Board() if board is None else Board.from_json(board)
     sighting = sight(video, printed)
-    seen, findings = None, ()
+    seen, findings, unsure = None, (), 0.0
     if poses is None:
         _refuse_unseen(sighting, printed, video)
-        camera = camera or find_lens(sighting.corners, printed.points, video.size).camera
+        if camera is None:
+            lens = find_lens(sighting.corners, printed.points, video.size)
+            camera, unsure = lens.camera, lens.deviation
         seen = find_poses(sighting.time, sighting.corners, printed.points, camera)
         poses = seen.poses
     assert camera is not None
@@ -117,6 +125,7 @@ def read_film(
         travelled,
         findings,
         sighting,
+        unsure,
         printed,
         seen,
     )
@@ -128,18 +137,24 @@ def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
     enough = int((count >= FEWEST).sum())
     if sighting.twice.mean() > 0.1:
         raise ValueError(f"'{video.path}' shows two boards with the same markers; leave one in the picture")
+    if np.ptp(sighting.time) < SHORTEST_FILM:
+        raise ValueError(
+            f"'{video.path}' is too short: {len(count)} pictures in {np.ptp(sighting.time):.1f} s; film for 10 to 20 s"
+        )
     if enough < FEWEST_PICTURES:
         raise ValueError(
             f"{enough} of {len(count)} pictures of '{video.path}' show {FEWEST} corners of the board, {board.name}, "
             f"and {FEWEST_PICTURES} are needed. Is it this board (board=...)? It must lie flat, be sharp, and "
-            "fill a third of the picture's width. A film without a board needs poses=... and camera=..., as read_colmap "
-            "finds them"
+            "fill a third of the picture's width. Without a board, give poses=... and camera=..., as of read_colmap"
         )
 
 
 def _path(poses: Poses, derivative: Derivative) -> CameraPath:
     """Return smoothed poses and velocities of each part without a gap that is long enough for the derivative."""
-    parts = [part for part in runs(poses.time, np.arange(len(poses.time)), GAP) if len(part) >= derivative.fewest]
+    far = np.linalg.norm(np.diff(poses.position, axis=0), axis=1)
+    jumps = 1 + np.flatnonzero(far > np.maximum(JUMP * np.median(far), FASTEST * np.diff(poses.time)))  # as at a cut
+    whole = np.split(np.arange(len(poses.time)), jumps)
+    parts = [part for each in whole for part in runs(poses.time, each, GAP) if len(part) >= derivative.fewest]
     if not parts:
         raise ValueError(
             f"the poses have gaps of more than {GAP:g} s everywhere; keep the board in the picture while you move"
@@ -205,6 +220,6 @@ def _recordings(
             path.motion,
             truth=None if known is None else surface.project(local[BOARD])[first:],
             noise_variance=place.spread**2,
-            distances={BOARD: np.full(len(part) - first, np.nan), **distances},
+            distances={**distances, BOARD: distances.get(BOARD, np.full(len(part) - first, np.nan))},
             source=name if len(parts) == 1 else f"{name}, from {time[part[0]]:.1f} s",
         )

@@ -50,6 +50,11 @@ class Bound:
     information : array of shape (K, n, n)
         Fisher information about the start, gathered up to each sample; it leaves a doubt in the motion out.
 
+    Raises
+    ------
+    WrongKind
+        If an argument is of another kind.
+
     See Also
     --------
     Efficiency : Errors of runs against it.
@@ -179,6 +184,7 @@ def cramer_rao(
     Returns
     -------
     Bound
+        Least covariances of the coordinates after each sample, shape (K, n, n).
 
     Raises
     ------

@@ -25,9 +25,14 @@ class Efficiency:
     time : array of shape (K,)
         Seconds since the first sample.
     errors : array of shape (N, K)
-        Errors of N runs.
+        Errors of N runs, in the coordinate's unit.
     bound : array of shape (K,)
-        Least standard deviation.
+        Least standard deviation, in the errors' unit.
+
+    Raises
+    ------
+    WrongKind
+        If an argument is of another kind.
 
     See Also
     --------

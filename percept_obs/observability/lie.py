@@ -185,7 +185,7 @@ class LieRanks:
 
 @checked
 def lie_derivatives(system: System, orders: int | None = None, varying: bool = False) -> Codistribution:
-    """Differentials of the outputs and of their Lie derivatives, in symbols.
+    """Derive the differentials of the outputs and of their Lie derivatives, in symbols.
 
     A state can be told from all states near it if their rank is the number of coordinates (Hermann and Krener,
     Nonlinear controllability and observability, IEEE Trans. Automatic Control 22 (1977)).  At single states more
@@ -203,6 +203,7 @@ def lie_derivatives(system: System, orders: int | None = None, varying: bool = F
     Returns
     -------
     Codistribution
+        A block of shape (m, n) for each order, with m outputs and n coordinates.
 
     Raises
     ------

@@ -93,13 +93,25 @@ class BoundMap:
     Parameters
     ----------
     system : PerspectiveSystem
+        Of the points, with numbers.
     measured : tuple of str
+        Outputs that are measured.
     y1, y2 : arrays of shapes (W,) and (H,)
         Image coordinates of the map's columns and rows.
     relative : array of shape (H, W)
         Least relative standard deviation of the distance; NaN where a point comes behind the camera.
     seconds, distance : float
-        Time after which the bound holds, and distance of the points at the beginning.
+        Time in seconds after which the bound holds, and distance in metres of the points at the beginning.
+
+    Raises
+    ------
+    WrongKind
+        If an argument is of another kind.
+
+    See Also
+    --------
+    bound_map : Makes it.
+    percept_obs.figures.bound_map : Draws it.
 
     Examples
     --------

@@ -247,8 +247,8 @@ def how_observable(
         Which outputs are measured; a perspective system stands for all image coordinates.
     window : float, optional
         Seconds; 10, or a quarter of a recording that is shorter than 40 s, when left out.
-    prior, noise_variance
-        See `cramer_rao`; for a recording without noise the variance that the extended Kalman filter believes.
+    prior, noise_variance : as in cramer_rao, optional
+        For a recording without noise the variance that the extended Kalman filter believes.
 
     Returns
     -------

@@ -128,6 +128,8 @@ def instantaneous(form: PartitionedSystem) -> InstantaneousObservability:
     ------
     NotAffine
         If there is no canonical form, and so no w.
+    WrongKind
+        If the form is of another kind.
 
     See Also
     --------

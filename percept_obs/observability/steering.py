@@ -107,6 +107,7 @@ def steering(system: PerspectiveSystem, velocity: Sequence[str] | None = None) -
     Returns
     -------
     Steering
+        Excitation and its gradient as functions of image and velocity.
 
     Raises
     ------
@@ -152,7 +153,7 @@ def steered(
     scenario : Scenario
         With a constant motion, whose velocity is that of the beginning and not zero.
     gain : float
-        kappa in 1/s; positive.
+        Gain kappa in 1/s; positive.
     velocity : sequence of three str, optional
         See `steering`.
     step : float
@@ -161,6 +162,7 @@ def steered(
     Returns
     -------
     Scenario
+        With the velocity that was steered as a function of time.
 
     Raises
     ------

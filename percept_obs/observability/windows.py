@@ -96,6 +96,7 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
     Returns
     -------
     Excitation
+        Integrals of w w^T over the windows that end at samples, and their eigenvalues.
 
     Raises
     ------

@@ -73,6 +73,7 @@ class Observer:
     Parameters
     ----------
     name : str
+        In tables and messages.
     form : PartitionedSystem
         The system; a canonical form where the observer needs one.
     equations : Equations
@@ -80,12 +81,14 @@ class Observer:
     estimate : tuple of expressions
         Estimates of ``form.coordinates``, from the state, the measured outputs, the parameters and the gains.
     gains : tuple of Gain
+        Numbers of the equations.
     start : tuple of expressions
         The state at the first sample, from that sample, the wanted estimates (`hats`), flags of those that are the
         sample itself (`first_seen`), parameters and gains.
     covariance : matrix of expressions, optional
         Covariance of the estimate, from the state, if the observer claims one.
     about : About, optional
+        Its title, source, needs and claim.
     constant_motion : bool
         True if the equations hold for a motion with constant coefficients only.
     unobservable : tuple of Unobservable
@@ -295,6 +298,17 @@ def with_point(observer: Observer) -> Observer:
     Parameters
     ----------
     observer : Observer
+        Of the point.
+
+    Returns
+    -------
+    Observer
+        With n coordinates more in its state.
+
+    Raises
+    ------
+    WrongKind
+        If an argument is of another kind.
 
     See Also
     --------

@@ -66,7 +66,7 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
 
     See Also
     --------
-    linear_approximation
+    percept_obs.observers.linear_approximation : A cascade of linear filters.
 
     Notes
     -----

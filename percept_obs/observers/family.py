@@ -37,7 +37,7 @@ class Option:
 
     See Also
     --------
-    Family : Holds options.
+    percept_obs.observers.Family : Holds options.
     percept_obs.observers.Gain : A number in the equations.
 
     Examples
@@ -140,7 +140,7 @@ class Family:
 
     See Also
     --------
-    family : The decorator that makes it.
+    percept_obs.observers.family.family : The decorator that makes it.
     Observer : What it makes.
 
     Examples
@@ -235,21 +235,22 @@ class Family:
         ).with_gains(**chosen)
 
     def _signature(self) -> inspect.Signature:
-        named, rest = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.VAR_KEYWORD
+        named, after = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
         options = [inspect.Parameter(option.name, named, default=option.value) for option in self.options]
-        return inspect.Signature([inspect.Parameter("form", named), *options, inspect.Parameter("gains", rest)])
+        gains = [inspect.Parameter(gain.name, after, default=gain.value) for gain in self.gains]
+        return inspect.Signature([inspect.Parameter("form", named), *options, *gains])
 
     def _docstring(self) -> str:
         text = inspect.getdoc(self.derive) or self.about.title
         head, *rest = re.split(r"\n\n(?=See Also\n|Notes\n)", text, maxsplit=1)
-        form = f"form : PartitionedSystem, or PerspectiveSystem\n    What is observed; needed: {self.about.needs}."
+        form = f"form : PartitionedSystem, or PerspectiveSystem\n    System to observe; needed: {self.about.needs}."
         parameters = "\n".join(map(str, (form, *self.options, *self.gains)))
         errors = "ValueError\n    If `refusal` has a reason against this form, or a gain or an option is refused."
         if not self.any_form:
             errors = f"NotAffine\n    If there is no canonical form.\n{errors}"
-        sections = {"Parameters": parameters, "Returns": "Observer", "Raises": errors}
+        sections = {"Parameters": parameters, "Returns": "Observer\n    With these gains.", "Raises": errors}
         made = "".join(f"\n\n{title}\n{'-' * len(title)}\n{lines}" for title, lines in sections.items())
-        return "\n\n".join([f"{head}{made}", *rest])
+        return "\n\n".join([f"{head}{made}", *rest]) + "\n"
 
     def __repr__(self) -> str:
         return f"{self.key}{self._signature()}"
@@ -281,6 +282,6 @@ def family(*, title: str, source: str, needs: str, claim: str, **others: Any) ->
     ... def plain(form):
     ...     return Derived(hats((*form.x1, *form.x2)), output_injection(form, innovation(form), 1, 1))
     >>> plain
-    plain(form, **gains)
+    plain(form)
     """
     return partial(Family, about=About(title, source, needs, claim), **others)

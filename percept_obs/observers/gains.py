@@ -80,7 +80,8 @@ class Gain:
         """Two lines of a docstring."""
         unit = "" if self.unit == "1" else f", in {self.unit}"
         condition = "" if self.condition == sp.true else f"; {self.condition}"
-        return f"{self.name} : float\n    {self.symbol}, {self.meaning}{unit}{condition}.  Default {self.value:.4g}."
+        meaning = self.meaning[:1].upper() + self.meaning[1:]
+        return f"{self.name} : float\n    {meaning} ({self.symbol}{unit}{condition}).  Default {self.value:.4g}."
 
 
 @checked

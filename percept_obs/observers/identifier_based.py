@@ -50,7 +50,7 @@ def identifier_based(form: CanonicalForm) -> Derived:
 
     See Also
     --------
-    de_luca : without the reset
+    percept_obs.observers.de_luca : Without the reset.
 
     Notes
     -----

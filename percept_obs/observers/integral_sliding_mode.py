@@ -84,7 +84,9 @@ def integral_sliding_mode(form: CanonicalForm, switch: str) -> Derived:
 
     See Also
     --------
-    range_identification, sliding_mode, ultimate_bound, tolerable_amplification
+    percept_obs.observers.range_identification, sliding_mode : Others that switch.
+    percept_obs.observers.integral_sliding_mode.ultimate_bound : How large its error stays.
+    percept_obs.observers.integral_sliding_mode.tolerable_amplification : Chooses c_max.
 
     Notes
     -----

@@ -94,7 +94,7 @@ def output_injection(
 
     See Also
     --------
-    innovation, noise_bias
+    innovation, percept_obs.observers.noise_bias : Parts of it.
 
     Examples
     --------
@@ -175,7 +175,7 @@ def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.Immuta
 
     See Also
     --------
-    output_injection : Takes it out.
+    percept_obs.observers.parts.output_injection : Takes it out.
 
     Examples
     --------

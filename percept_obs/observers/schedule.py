@@ -30,10 +30,16 @@ def scheduled(observer: Observer, until: float = 100.0, **gains: Any) -> Observe
     Parameters
     ----------
     observer : Observer
+        With gains that stay.
     until : float
         Seconds up to which each gain is checked, at 1001 times, to be finite and to fulfil its condition.
     **gains : sympy expressions in `TIME`, by the gains' names
         Never text, which sympy would run as code.
+
+    Returns
+    -------
+    Observer
+        With a state more, and without those gains.
 
     Raises
     ------

@@ -57,7 +57,7 @@ def sliding_mode(form: CanonicalForm, switch: str) -> Derived:
 
     See Also
     --------
-    identifier_based, integral_sliding_mode
+    identifier_based, integral_sliding_mode : Observers without and with more of a sliding mode.
 
     Notes
     -----

@@ -29,7 +29,7 @@ def independent_points(motion: Motion, points: int, surface: ImagingSurface | No
     motion : Motion
         Of a single point, from `affine` or `rigid`.
     points : int
-        p.
+        Number p.
     surface : ImagingSurface, optional
         The pinhole when left out.
 
@@ -80,7 +80,7 @@ def rigid_body(
     Parameters
     ----------
     points : int
-        p.
+        Number p.
     camera_angular_velocity, camera_velocity, body_angular_velocity, point_velocity : arrays of shape (3,) or (K, 3), \
 functions of time, optional
         w_c, w_b in rad/s and v_c, v_p in m/s; symbols when all are left out, else 0 for those that are.

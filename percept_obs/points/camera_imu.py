@@ -51,7 +51,7 @@ def camera_imu(
     See Also
     --------
     trusting : Chooses P of its observer.
-    one_landmark : With both biases, of one point.
+    percept_obs.system.inertial.camera_with_imu : With both biases, of one point.
 
     Notes
     -----

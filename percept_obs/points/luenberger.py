@@ -144,9 +144,15 @@ def luenberger(
     Parameters
     ----------
     form : PointsForm
+        Of n states.
     P : number, array of shape (n, n), function of time, or LyapunovMatrix
         A number stands for its multiple of the identity.  Others come from `constant`, `scheduled`, `lyapunov` and
         `riccati`.  A smaller P corrects more.
+
+    Returns
+    -------
+    LuenbergerObserver
+        With P of shape (n, n).
 
     Raises
     ------

@@ -27,7 +27,7 @@ class RayError:
     turning : symbol
         omega, the rate in rad/s at which the ray turns against the known rotation.
     matrix : matrix of shape (2, 2)
-        M.
+        The matrix M.
 
     See Also
     --------

@@ -30,10 +30,11 @@ class PointsScenario(Scene):
     Parameters
     ----------
     name : str
+        Name in messages.
     form : PointsForm
         With numbers for its motion.
-    state : sequence of n numbers
-        The state at time 0.
+    state : array of shape (n,)
+        The state at time 0, in the form's units.
     duration : float
         In seconds.
     source : str

@@ -35,6 +35,7 @@ class Uniform(_Noise):
     Parameters
     ----------
     bound : float
+        Largest size, in the output's unit.
 
     Raises
     ------
@@ -73,6 +74,7 @@ class Gaussian(_Noise):
     Parameters
     ----------
     sigma : float
+        In the output's unit.
 
     Raises
     ------

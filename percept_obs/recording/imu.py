@@ -39,7 +39,7 @@ class Imu:
 
     See Also
     --------
-    percept_obs.scenarios.held_phone : Has one.
+    percept_obs.recording.scenarios.held_phone : Has one.
 
     Examples
     --------

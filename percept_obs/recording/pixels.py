@@ -41,8 +41,8 @@ class PixelCamera:
     size : pair of ints, optional
         Width and height of the image in pixels; an image without borders when left out.
     distortion : sequence of floats, optional
-        k1, k2, p1, p2, then k3, then k4, k5, k6 of OpenCV's model, as its calibration gives them; four, five or eight
-        numbers, or none for images that are rectified.
+        Numbers k1, k2, p1, p2, then k3, then k4, k5, k6 of OpenCV's model, as its calibration gives them: four, five,
+        eight, or none for images that are rectified.
 
     Raises
     ------
@@ -79,7 +79,7 @@ class PixelCamera:
             values = np.asarray(getattr(self, name), dtype=float)
             if values.shape != (2,) or not ((values > least) & np.isfinite(values)).all():
                 raise ValueError(f"{name} is {getattr(self, name)!r}; it must be two {kind} numbers of pixels")
-            vars(self)[name] = tuple(values.tolist())
+            vars(self)[name] = tuple(map(int, values) if name == "size" else values.tolist())
         lens = np.asarray(self.distortion, dtype=float)
         if lens.size not in LENS_COUNTS or not np.isfinite(lens).all():
             raise ValueError(

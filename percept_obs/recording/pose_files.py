@@ -30,6 +30,11 @@ def read_tum(path: PathLike, clock: Clock = SECONDS) -> Poses:
     clock : Clock
         Of the file; give ``Clock(zero=...)`` to bring its times onto the clock of the tracks.
 
+    Returns
+    -------
+    Poses
+        In seconds and metres.
+
     Raises
     ------
     FileNotFoundError
@@ -82,6 +87,11 @@ def read_euroc(path: PathLike, clock: Clock = NANOSECONDS) -> Poses:
     clock : Clock
         Of the file.  ``Clock(zero=1403636580838555648, tick=1e-9)`` counts from there, exactly; without a
         zero 19 digits do not fit, and times are good to 0.2 microseconds.
+
+    Returns
+    -------
+    Poses
+        In seconds and metres.
 
     Raises
     ------

@@ -35,7 +35,7 @@ class Poses:
     time : array of shape (K,)
         Seconds, strictly increasing.
     position : array of shape (K, 3)
-        p in metres.
+        Places p in metres.
     orientation : array of shape (K, 4) or (K, 3, 3)
         R as quaternions (x, y, z, w) of length 1, or as matrices; kept as quaternions.
 
@@ -208,6 +208,11 @@ def rigid_from_poses(
         "camera" for poses of the world in the camera's frame, X_camera = R X_world + p, as calibration has them.
     derivative : Neighbours, Quadratic or SmoothingSpline
         For the velocities; a parabola over 0.1 s to either side when left out.
+
+    Returns
+    -------
+    Motion
+        Known from the first pose to the last: w in rad/s, v_c in m/s.
 
     Raises
     ------

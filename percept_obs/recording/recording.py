@@ -86,17 +86,17 @@ class Recording:
         Reason why images or motion are not as they are known, such as "the lens focuses anew"; no estimate is trusted
         then.
 
-    Warns
-    -----
-    Unlikely
-        If the samples look like pixels, or a sampled motion has a hole while it is needed.
-
     Raises
     ------
     BehindCamera
         If a point that is seen is not in front of the camera by its truth.
     ValueError
         If shapes do not fit, times do not increase, or values are not finite where they must be.
+
+    Warns
+    -----
+    Unlikely
+        If the samples look like pixels, or a sampled motion has a hole while it is needed.
 
     See Also
     --------

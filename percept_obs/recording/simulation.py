@@ -34,6 +34,7 @@ class Scenario(Scene):
     Parameters
     ----------
     name : str
+        Name in messages.
     motion : Motion
         With numbers.
     position : array of shape (3,)
@@ -41,10 +42,11 @@ class Scenario(Scene):
     duration : float
         In seconds.
     surface : ImagingSurface
+        On which it is seen.
     source : str
         Where the set-up comes from.
     unit : float
-        Of its recordings, see `Recording`.
+        Unit of length of its recordings, see `Recording`.
 
     Raises
     ------
@@ -56,7 +58,7 @@ class Scenario(Scene):
     See Also
     --------
     record : Simulates a recording of it.
-    percept_obs.scenarios : Ready ones.
+    percept_obs.recording.scenarios.ma2005_eq35 : A ready one.
 
     Examples
     --------
@@ -173,13 +175,19 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
 
     Parameters
     ----------
-    scenario : Scenario, PointsScenario or StructureScenario
+    scenario : Scenario, PointsScenario, StateScenario or StructureScenario
+        What moves, and how it is seen.
     duration : float, optional
         Seconds; the scenario's own when left out.
     camera : Camera, optional
         The scenario's own when left out, which has no noise.
     seed : int or numpy Generator
         Of the noise and the lost samples, drawn in this order.
+
+    Returns
+    -------
+    Recording
+        With its truth, and the outputs without noise as its signal.
 
     Raises
     ------

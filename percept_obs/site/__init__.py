@@ -59,7 +59,6 @@ SETTINGS = {
     "autodoc_typehints": "none",
     "autodoc_preserve_defaults": True,  # written out, all ledgers are a default of 600 kB
     "add_module_names": False,
-    "suppress_warnings": ["ref.python"],  # the word "matrix" in a docstring is a word, not the name of an attribute
 }
 
 

@@ -14,6 +14,8 @@ def setup(app: Any) -> dict[str, bool]:
     """Register the extension with Sphinx."""
     app.add_html_math_renderer("mathml", (_inline, None), (_display, None))
     app.connect("autodoc-process-docstring", _keep_bars)
+    app.connect("doctree-read", _keep_words)
+    app.connect("missing-reference", _find_public)
     app.connect("html-page-context", _let_keys_scroll)
     app.connect("html-page-context", describe)
     app.connect("html-page-context", _share_contents, priority=400)  # before the theme writes them
@@ -55,8 +57,23 @@ def _write(self: Any, text: str) -> None:
 
 
 def _keep_bars(app: Any, kind: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
-    """Escape |x|, an absolute value in docstrings and a substitution for Sphinx."""
-    lines[:] = [line if line.lstrip().startswith((">>>", "...")) else line.replace("|", r"\|") for line in lines]
+    """Escape |x|, an absolute value in docstrings and a substitution for Sphinx, and initials, which begin no list."""
+    for k, line in enumerate(lines):
+        if not line.lstrip().startswith((">>>", "...")):
+            lines[k] = re.sub(r"^( *[A-Z])\. ", r"\1\\. ", line.replace("|", r"\|"))
+
+
+def _keep_words(app: Any, doctree: Any) -> None:
+    """Take words of a type such as "function of time" for words, not for names of attributes."""
+    for node in [each for each in doctree.findall() if each.tagname == "pending_xref"]:
+        if node["reftype"] == "class" and node["reftarget"].islower():
+            node.replace_self(node.children)
+
+
+def _find_public(app: Any, env: Any, node: Any, content: Any) -> Any:
+    """Return a link to a name of the whole package that a page of one of its folders gives without the package."""
+    python, page, name = env.domains["py"], node.get("refdoc"), f"percept_obs.{node['reftarget']}"
+    return python.resolve_xref(env, page, app.builder, node["reftype"], name, node, content)
 
 
 def _let_keys_scroll(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:

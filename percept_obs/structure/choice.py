@@ -50,12 +50,14 @@ class StructureAndMotion(OnePoint):
         Known ones that were estimated in an earlier stage.  With d_s among them, the velocities in theta stay
         multiplied by d_s, and Omega_g free of its error.
     scale : float, optional
-        d_s in 1/m where it is known.
+        The known d_s in 1/m.
 
     Raises
     ------
     ImpossibleChoice
         If the unknowns cannot be told apart, or the statements about a quantity contradict each other.
+    WrongKind
+        If an argument is of another kind.
 
     See Also
     --------

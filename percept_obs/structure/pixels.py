@@ -37,7 +37,7 @@ class SignalToNoise:
 
     See Also
     --------
-    ScaledDepthCamera : Takes it instead of a noise.
+    percept_obs.structure.ScaledDepthCamera : Takes it instead of a noise.
     percept_obs.Gaussian : Noise of given size.
 
     Examples

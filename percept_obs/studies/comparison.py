@@ -149,7 +149,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 
     See Also
     --------
-    described : the summary as text
+    compare : Makes the table.
 
     Examples
     --------

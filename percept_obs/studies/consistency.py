@@ -223,6 +223,11 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     confidence : float
         Probability of the two-sided intervals, between 0 and 1.
 
+    Returns
+    -------
+    Consistency
+        Moving averages of the innovations' squares and their intervals, with a `verdict` in words.
+
     Raises
     ------
     ValueError
@@ -230,8 +235,8 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
 
     See Also
     --------
-    percept_obs.studies.likelihood.tune_by_likelihood : chooses gains whose claims hold
-    percept_obs.figures.consistency : draws the moving averages
+    percept_obs.studies.likelihood.tune_by_likelihood : Chooses gains whose claims hold.
+    percept_obs.figures.consistency : Draws the moving averages.
 
     Notes
     -----

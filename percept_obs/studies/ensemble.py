@@ -73,7 +73,9 @@ def ensemble(
     Parameters
     ----------
     scenario : Scenario
+        Of one point.
     observer : Observer
+        That follows it.
     over : mapping of names to values, optional
         What varies: a gain of the observer ("gain"); an estimate at the start ("start_y3"); the point's position
         ("X"), the true motion ("b1") or the surface, by the names of their symbols; what the observer believes of the
@@ -81,8 +83,9 @@ def ensemble(
         of values is a dimension; a DataArray brings its own, so that two of them on one dimension go together.
     seeds : int or sequence of int
         Seeds of the noise, or how many of them, from 0 on.
-    duration, camera : see `record`
-    start, hold, believed, step : see `track`
+    duration, camera : as in record
+        Seconds, the scenario's own when left out, and a camera.
+    start, hold, believed, step : as in track
         A true motion that varies is believed in unless `believed` is given.
     tolerance : float
         Bound on the relative error of the distance, or on the absolute errors of the `coordinates`; see `Run.outcome`.
@@ -126,7 +129,7 @@ def ensemble(
 
     Warns
     -----
-    Unfinished
+    percept_obs.studies.chunks.Unfinished
         If it was interrupted; what is done is returned.
 
     See Also

@@ -69,8 +69,14 @@ def sized(surface: ImagingSurface, radius: float | None = None) -> ImagingSurfac
     Parameters
     ----------
     surface : ImagingSurface
+        On which the point is seen.
     radius : float, optional
-        r in metres, of the simulated sphere.  No observer knows it.
+        Radius r in metres of the simulated sphere.  No observer knows it.
+
+    Returns
+    -------
+    ImagingSurface
+        With s, without unit, after its image coordinates.
 
     Raises
     ------
@@ -79,7 +85,7 @@ def sized(surface: ImagingSurface, radius: float | None = None) -> ImagingSurfac
 
     See Also
     --------
-    pinhole, unified
+    pinhole, unified : Surfaces that may see it.
 
     Examples
     --------

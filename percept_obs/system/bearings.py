@@ -50,7 +50,7 @@ def bearings_only() -> StateView:
     See Also
     --------
     own_ship : The motion.
-    percept_obs.scenarios.own_ship_turns : An example.
+    percept_obs.recording.scenarios.own_ship_turns : An example.
 
     Examples
     --------

@@ -21,16 +21,25 @@ from percept_obs.validation import set_fields
 class NotAffine(ValueError):
     """The measured outputs' rate is not affine in the hidden coordinates.
 
-    Attributes
+    Parameters
     ----------
-    measured : tuple of str
-        Names of the measured outputs.
-    culprits : tuple of str
-        Names of the hidden coordinates that do not enter linearly.
+    measured : sequence of str
+        Names of the measured outputs; an attribute, as a tuple.
+    culprits : sequence of str
+        Names of the hidden coordinates that do not enter linearly; an attribute, as a tuple.
 
     See Also
     --------
     CanonicalForm : What is missing then.
+
+    Examples
+    --------
+    >>> from percept_obs import NotAffine, PerspectiveSystem, affine, ibo, unified
+    >>> try:
+    ...     ibo(PerspectiveSystem(affine(), unified(1.0)).partition("y1"))
+    ... except NotAffine as error:
+    ...     error.culprits
+    ('y2', 'y3')
     """
 
     def __init__(self, measured: Sequence[str], culprits: Sequence[str]) -> None:
@@ -66,10 +75,15 @@ class PartitionedSystem:
         Symbols of the known motion and of the view.
     coordinates : tuple of symbols
         All coordinates in the order of the view.
-    view : View or None
+    view : View, optional
         View that the outputs belong to.
-    motion : Motion or None
+    motion : Motion, optional
         Motion X' = A X + b of the point behind it, for observers that need more than the rate; not compared.
+
+    Raises
+    ------
+    NotAffine
+        By `canonical_form`, if there is none.
 
     See Also
     --------
@@ -153,11 +167,19 @@ class CanonicalForm(PartitionedSystem):
 
     Parameters
     ----------
-    x1, x2, parameters, coordinates, view, motion
-        See `PartitionedSystem`; its rate follows from w, phi and g.
+    x1, x2, parameters, coordinates, view, motion : as in PartitionedSystem
+        Its rate follows from w, phi and g.
     w : matrix of shape (n2, n1)
+        Factors of the hidden coordinates in the measured ones' rate.
     phi : matrix of shape (n1, 1)
+        Rest of that rate.
     g : matrix of shape (n2, 1)
+        Rate of the hidden coordinates.
+
+    Raises
+    ------
+    NeedsMoreOutputs
+        By `cramer`, if w^T x2 never determines x2.
 
     See Also
     --------

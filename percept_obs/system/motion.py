@@ -49,6 +49,11 @@ class Motion:
     signal : Signal, optional
         Values of `parameters` over time.
 
+    Raises
+    ------
+    WrongKind
+        If an argument is of another kind.
+
     See Also
     --------
     affine, rigid, linear : Make it.
@@ -142,6 +147,11 @@ def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: 
     times : array of shape (K,), optional
         Times in seconds of sampled coefficients.
 
+    Returns
+    -------
+    Motion
+        With A of shape (3, 3) and b of shape (3, 1).
+
     Raises
     ------
     ValueError
@@ -149,7 +159,7 @@ def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: 
 
     See Also
     --------
-    rigid, linear
+    rigid, linear : Other motions.
 
     Examples
     --------
@@ -181,9 +191,14 @@ def rigid(
     Parameters
     ----------
     angular_velocity, camera_velocity, point_velocity : arrays of shape (3,) or (K, 3), functions of time, optional
-        w in rad/s, v_c and v_p in m/s; symbols when left out.
+        Values of w in rad/s, v_c and v_p in m/s; symbols when left out.
     times : array of shape (K,), optional
         Times in seconds of sampled velocities.
+
+    Returns
+    -------
+    Motion
+        With A = [w]x and b = v_p - v_c.
 
     Raises
     ------
@@ -192,7 +207,7 @@ def rigid(
 
     See Also
     --------
-    affine, linear
+    affine, linear : Other motions.
 
     Examples
     --------
@@ -231,9 +246,14 @@ def linear(
     v : array of shape (n,) or (K, n), function of time, or sympy expressions, optional
         Input in m/s; symbols when left out.
     states : int, optional
-        n; needed where neither array shows it.
+        Number n of entries; needed where neither array shows it.
     times : array of shape (K,), optional
         Times in seconds of sampled coefficients.
+
+    Returns
+    -------
+    Motion
+        With A of shape (n, n) and b = v of shape (n, 1).
 
     Raises
     ------
@@ -242,7 +262,7 @@ def linear(
 
     See Also
     --------
-    affine
+    affine : Of a point in space.
 
     Examples
     --------

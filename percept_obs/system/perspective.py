@@ -32,7 +32,9 @@ class PerspectiveSystem:
     Parameters
     ----------
     motion : Motion
+        Of one point in space, with or without numbers.
     surface : ImagingSurface
+        On which it is seen.
 
     Raises
     ------

@@ -31,7 +31,7 @@ class StateView(OnePoint):
     ----------
     name : str
     state : tuple of symbols
-        x.
+        The state x.
     rate : tuple of expressions
         f, in x and the motion's parameters.
     motion : Motion
@@ -55,7 +55,7 @@ class StateView(OnePoint):
     See Also
     --------
     PerspectiveSystem : A point on an imaging surface.
-    StateScenario : Simulates it.
+    percept_obs.recording.state_scenario.StateScenario : Simulates it.
 
     Examples
     --------

@@ -27,7 +27,21 @@ Start = Mapping[str, float] | Sequence[float] | None
 
 
 class DoesNotFit(ValueError):
-    """An observer cannot follow this recording."""
+    """An observer cannot follow this recording.
+
+    See Also
+    --------
+    track : Raises it before the run begins.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios, sphere, track
+    >>> flat = ibo(PerspectiveSystem(affine(), pinhole()))
+    >>> track(record(scenarios.ma2005_eq35(sphere()), 1), flat)  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    percept_obs.tracking.following.DoesNotFit: the system was made for the pinhole surface ...
+    """
 
 
 class StepTooLong(UserWarning):
@@ -63,7 +77,8 @@ def track(
     Parameters
     ----------
     recording : Recording
-    observer : Observer, or LuenbergerObserver for several points
+        Of one point or of several.
+    observer : Observer, FunctionObserver, or LuenbergerObserver for several points
         On the recording's surface, with measured outputs that the recording has.
     start : mapping of coordinate names to values, n values, or FirstSight, optional
         Estimates at the first sample.  What is left out starts from the first sample (measured) or at the
@@ -104,7 +119,7 @@ def track(
 
     See Also
     --------
-    compare : Several observers on several recordings.
+    percept_obs.studies.comparison.compare : Several observers on several recordings.
     ensemble : Many runs with noise of their own.
 
     Notes

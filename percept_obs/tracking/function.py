@@ -32,6 +32,7 @@ class FunctionObserver:
     Parameters
     ----------
     name : str
+        In tables and messages.
     form : PartitionedSystem
         The system; ``n`` coordinates in the order of ``form.coordinates``, with lengths by the recording's unit.
     start : function of the wanted estimates, shape (n,)
@@ -45,6 +46,7 @@ class FunctionObserver:
     covariance : function of the state, optional
         Returns the covariance of the estimate that it claims, shape (n, n).
     about : About, optional
+        Its title, source, needs and claim.
 
     Raises
     ------
@@ -53,7 +55,7 @@ class FunctionObserver:
 
     See Also
     --------
-    transition : The system's own step, for such functions.
+    percept_obs.tracking.transition : The system's own step, for such functions.
     Observer : Observers as equations, which every language of the package runs.
 
     Examples

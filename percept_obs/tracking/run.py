@@ -35,7 +35,9 @@ class Run:
     Parameters
     ----------
     recording : Recording
-    observer : Observer, or LuenbergerObserver for several points
+        That it followed.
+    observer : Observer, FunctionObserver, or LuenbergerObserver for several points
+        That ran.
     estimate : array of shape (K, n)
         Estimates of the view's coordinates; NaN from `diverged_at` on.
     state : array of shape (K, s)
@@ -44,10 +46,15 @@ class Run:
         Time at which the state stopped being finite, by the recording's clock.
     hold : "zero", "first" or "exact"
         Hold of the samples, as in `track`.
-    resets : array
-        Times by the recording's clock at which the estimate was reset.
+    resets : array of shape (R,)
+        Times in seconds by the recording's clock at which the estimate was reset.
     unobservable : array of shape (K,) of int
         Number of the `Observer.unobservable` that hides the hidden coordinates, from 1; 0 where they are estimated.
+
+    Raises
+    ------
+    WrongKind
+        If an argument is of another kind.
 
     See Also
     --------

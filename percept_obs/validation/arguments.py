@@ -26,7 +26,20 @@ LATER = MappingProxyType({"pd": "pandas"})
 
 
 class WrongKind(TypeError, ValueError):
-    """An argument is of another kind than the function takes: a TypeError to Python, a ValueError as all of ours."""
+    """An argument is of another kind than the function takes: a TypeError to Python, a ValueError as all of ours.
+
+    See Also
+    --------
+    percept_obs.TooMuchWork : Raised where the kind is right, and the number too large.
+
+    Examples
+    --------
+    >>> from percept_obs import Camera
+    >>> Camera("0.1")
+    Traceback (most recent call last):
+    ...
+    percept_obs.validation.arguments.WrongKind: Camera(): period is the text '0.1'; expected a real number
+    """
 
 
 def checked(thing: Thing) -> Thing:

@@ -12,7 +12,20 @@ MOST_TERMS = 20_000
 
 
 class TooMuchWork(ValueError):
-    """A call would take more memory or time than is allowed; nothing of it has begun."""
+    """A call would take more memory or time than is allowed; nothing of it has begun.
+
+    See Also
+    --------
+    percept_obs.ensemble : Runs that are counted while they run need no memory each.
+
+    Examples
+    --------
+    >>> from percept_obs import record, scenarios
+    >>> record(scenarios.ma2005_eq35(), 1e9)  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    percept_obs.validation.limits.TooMuchWork: this would be 9e+11 numbers, from 1e+11 samples, and at most ...
+    """
 
 
 def limit(amount: float, unit: str, remedy: str, most: float = MOST_NUMBERS) -> None:

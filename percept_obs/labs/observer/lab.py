@@ -30,8 +30,9 @@ from percept_obs.labs.observer.tracks import (
     refused_for,
     table_of,
     track_for_the_page,
+    tracks_of,
     typed_text,
-    with_affine_motion,
+    with_affine_motions,
 )
 from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.memory import kept_by_reads
@@ -44,6 +45,7 @@ from percept_obs.labs.shared.work import motion_work, too_much, within_reach
 from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observers import Observer
 from percept_obs.recording import Camera, Frames, Recording, Scenario
+from percept_obs.recording.footage import Footage
 from percept_obs.system.apparent_size import sized
 from percept_obs.system.motion import Motion, affine
 from percept_obs.system.signal import OverTime, Signal
@@ -60,17 +62,19 @@ class ObserverLab(Lab):
 
     Parameters
     ----------
-    scenario : str, Scenario or Recording
+    scenario : str, Scenario, Recording or Footage
         Opens the lab: the name of a scenario, or one of your own; without any argument it is a drive past a point.
         A motion in expressions of time is typed into the lab; one that is sampled, or a function, is taken as samples
-        that stay as they are after the last one.
+        that stay as they are after the last one.  Of a film, such as one of
+        `percept_obs.film.read_film`, the lab offers up to 12 tracks, and opens with the longest
+        one with a truth, the film behind it, and an extended Kalman filter.
     recordings : mapping of names to recordings, optional
         Tracks of a real camera that can be chosen as well.
     observers : list, optional
         Names, and observers of your own: functions of a form such as `percept_obs.observers.family.family` makes, or
         an `Observer` of the one form that it is made for.
     frames : Frames, or mapping of names of recordings to Frames, optional
-        A film behind the track of the recording that it opens with, or of others.
+        A film behind the track of the recording that it opens with, or of others, on the first screen.
     surface : str or ImagingSurface, optional
         The name of an imaging surface, or one of your own, or a function that gives it.
     **settings
@@ -93,12 +97,12 @@ class ObserverLab(Lab):
     schema = SCHEMA
     title = "One point, a camera, and observers"
     blocks = BLOCKS
-    frames = traitlets.Dict(help="Frames of films behind tracks, as PNG files.").tag(sync=True)
+    frames: Any = traitlets.List(help="Films behind tracks, their frames as PNG or JPEG files.").tag(sync=True)
 
     @checked
     def __init__(
         self,
-        scenario: str | Scenario | Recording | None = None,
+        scenario: str | Scenario | Recording | Footage | None = None,
         recordings: Mapping[str, Recording] | None = None,
         *,
         observers: Any = None,
@@ -108,6 +112,7 @@ class ObserverLab(Lab):
     ) -> None:
         scenes = {name: make() for name, make in SCENARIOS.items()}
         tracks = dict(recordings or {})
+        films: dict[str, Frames] = {}
         if scenario is None:
             plain = not (set(settings) - {"face"} or tracks or observers or surface)
             settings, scenario = (DRIVE | settings, "drive") if plain else (settings, STANDARD["scenario"])
@@ -117,6 +122,14 @@ class ObserverLab(Lab):
         elif isinstance(scenario, Recording):
             tracks[scenario.source or "recording"] = scenario
             scenario = scenario.source or "recording"
+        elif isinstance(scenario, Footage):
+            film, (scenario, shown) = scenario.frames, tracks_of(scenario)
+            tracks, films = tracks | shown, dict.fromkeys(shown, film)
+            observers = ["extended_kalman"] if observers is None else observers
+            settings = {"gains": {"extended_kalman": _gains_for(shown[scenario])}} | settings
+        films |= {scenario: frames} if isinstance(frames, Frames) else frames or {}
+        for name, film in films.items():
+            _refuse_other_times(name, film, tracks)
         if same := sorted(set(scenes) & set(tracks)):
             raise ValueError(f"a recording and a scenario have the name {same[0]!r}; give the recording another name")
         asked, users = (None, {}) if observers is None else read_observers(observers, BY_NAME)
@@ -134,9 +147,11 @@ class ObserverLab(Lab):
         on = dict(zip((*scenes, *tracks), names[len(given) :], strict=True))
         self._tables = {n: t for n, s in scenes.items() if not typed_text(s.motion) and (t := table_of(s))}
         known = {n: {"motion": typed_text(s.motion), **as_settings(s, on[n])} for n, s in scenes.items()}
-        self._recordings = {n: with_affine_motion(n, r, self._registry, on[n]) for n, r in tracks.items()}
+        self._recordings = with_affine_motions(tracks, {n: self._registry.surfaces[on[n]] for n in tracks})
         self.schema = schema_of(self._registry, {**known, **tracks})
         opening = str(self.schema["scenario"].read("scenario", scenario))
+        motions = list(dict.fromkeys(recording.motion for recording in self._recordings.values()))
+        shots = list(dict.fromkeys(films.values()))
         fit = known.get(opening) or fitting(self._recordings[opening], on[opening])
         chosen = {"observers": asked, "surface": surface}
         standard = STANDARD | {name: self.schema[name].opening for name in ("gains", "switches")}
@@ -150,8 +165,10 @@ class ObserverLab(Lab):
             scenarios={n: {"title": s.name, **known[n], **sampled.get(n, {})} for n, s in scenes.items()},
             recordings={
                 n: track_for_the_page(recording, tracks[n].motion.name, on[n], self._registry)
+                | {"motion": motions.index(recording.motion), "film": shots.index(films[n]) if n in films else None}
                 for n, recording in self._recordings.items()
             },
+            motions=[table_for_the_page(motion) for motion in motions],
             own=self._registry.for_the_page(),
             varies={n: VARIES.format("motion") for n, make in self._registry.observers.items() if make.constant_motion},
             drive=DRIVE,
@@ -161,12 +178,7 @@ class ObserverLab(Lab):
             judged=DISTANCE,
             remedy=REMEDY,
         )
-        films = {opening: frames} if isinstance(frames, Frames) else dict(frames or {})
-        if strange := [name for name in films if name not in tracks]:
-            raise ValueError(
-                f"frames are given for {strange[0]!r}, which is no recording of this lab; give its recording"
-            )
-        self.frames = {n: _film_for_the_page(film, tracks[n]) for n, film in films.items()}
+        self.frames = [{"time": np.asarray(f.time).tolist(), "extent": f.extent, "images": f.images} for f in shots]
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
@@ -278,15 +290,22 @@ def _seen_on(name: str, recording: Recording) -> ImagingSurface:
     return with_numbers(recording.view)
 
 
-def _film_for_the_page(film: Frames, recording: Recording) -> Settings:
-    """A film with times that count from the recording's first sample."""
-    times = np.asarray(film.time) - recording.time[0]
-    if times[-1] < 0 or times[0] > recording.elapsed[-1]:
+def _gains_for(recording: Recording) -> Settings:
+    """Gains of a Kalman filter in metres: the noise of a track, if it is known, and a start that suits its speed."""
+    noise = {"noise_variance": recording.noise_variance} if recording.noise_variance else {}
+    return noise | {"hidden_variance": recording.in_own_unit().unit ** -2}
+
+
+def _refuse_other_times(name: str, film: Frames, tracks: Mapping[str, Recording]) -> None:
+    """Raise a ValueError for frames of no recording, or of times at which it has no samples."""
+    if name not in tracks:
+        raise ValueError(f"frames are given for {name!r}, which is no recording of this lab; give its recording")
+    times, elapsed = np.asarray(film.time) - tracks[name].time[0], tracks[name].elapsed
+    if times[-1] < 0 or times[0] > elapsed[-1]:
         raise ValueError(
             f"the frames are from {times[0]:.4g} to {times[-1]:.4g} s after the recording's first sample, and none is "
-            f"of its {recording.elapsed[-1]:.4g} s; give their times by the recording's clock"
+            f"of its {elapsed[-1]:.4g} s; give their times by the recording's clock"
         )
-    return {"time": times.tolist(), "extent": list(film.extent), "images": list(film.images)}
 
 
 def _numbers(settings: Settings) -> np.ndarray:

@@ -1,5 +1,6 @@
 """Recordings of a real camera, and motions that vary, as tables for the page."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -10,16 +11,39 @@ from percept_obs.compile import vectorised
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.registry import Registry
 from percept_obs.labs.observer.texts import BLOCKS
-from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.schema import Settings
 from percept_obs.labs.shared.typed_motion import MOST, read_motion
 from percept_obs.recording import Recording, Scenario
+from percept_obs.recording.footage import Footage
 from percept_obs.system.motion import TIME, Motion, affine
+from percept_obs.system.surfaces import ImagingSurface
 
 LONGEST = 200.0
 """Seconds up to which a sampled motion is known; after its last sample it stays as it is there."""
 
+MOST_TRACKS = 12
+"""Tracks of a film that the lab offers, so that its page stays small."""
+
+SHORTEST = 1.0
+"""Seconds that a track of a film lasts at least, or there is little to see of it."""
+
 VARIES = "it needs a motion with constant coefficients, but the {} varies"
+
+
+def tracks_of(film: Footage) -> tuple[str, dict[str, Recording]]:
+    """Tracks of a film for the lab, spread over it, in metres; first the name of the longest one with a truth."""
+    whole = [r for r in film if isinstance(r.view, ImagingSurface) and r.elapsed[-1] >= SHORTEST]
+    if not whole:
+        raise ValueError(
+            f"the film {film.source!r} has no track of one point that lasts {SHORTEST:g} s; move the camera more "
+            "slowly, in more light, past things with corners"
+        )
+    longest = {r.source: r for r in sorted(whole, key=lambda r: float(r.elapsed[-1]))}
+    opening = max(longest.values(), key=lambda r: (r.truth is not None, r.elapsed[-1]))
+    others = [r for r in whole if r is longest[r.source] and r is not opening]
+    spread = np.linspace(0, len(others) - 1, min(len(others), MOST_TRACKS - 1)).astype(int)
+    shown = {opening, *(others[k] for k in spread)}
+    return opening.source, {r.source: replace(r, unit=1.0) for r in whole if r in shown}
 
 
 def track_for_the_page(recording: Recording, motion: str, surface: str, registry: Registry) -> dict[str, Any]:
@@ -27,12 +51,14 @@ def track_for_the_page(recording: Recording, motion: str, surface: str, registry
 
     A lost sample is null, since JSON knows no NaN.
     """
+    measured = next(iter(recording.distances.items()), None) if recording.truth is None else None
     return {
         "names": recording.names,
+        "begin": float(recording.time[0]),
         "time": recording.elapsed.tolist(),
         "samples": [[None if np.isnan(v) else v for v in row] for row in recording.outputs.tolist()],
         "truth": None if recording.truth is None else recording.truth.tolist(),
-        "motion": table_for_the_page(recording.motion, float(recording.time[0])),
+        "measured": measured and [measured[0], [None if np.isnan(v) else v for v in measured[1].tolist()]],
         **fitting(recording, surface),
         "kind": motion,
         "refused": refused_for(recording.motion, registry, "recording's"),
@@ -52,16 +78,38 @@ def refused_for(motion: Motion, registry: Registry, whose: str) -> dict[str, str
     return {name: VARIES.format(whose) for name, make in registry.observers.items() if make.constant_motion}
 
 
-def with_affine_motion(name: str, recording: Recording, registry: Registry, surface: str) -> Recording:
-    """A recording with the motion's A and b in samples, so that the lab's observers fit it; lengths by its unit."""
-    motion, times = recording.motion, recording.time
+def with_affine_motions(
+    recordings: Mapping[str, Recording], surfaces: Mapping[str, ImagingSurface]
+) -> dict[str, Recording]:
+    """Recordings with the motion's A and b in samples, so that the lab's observers fit them; lengths by their units.
+
+    Those that share a motion share its samples.
+    """
+    sharing: dict[tuple[Motion, float], list[Recording]] = {}
+    for each in recordings.values():
+        sharing.setdefault((each.motion, each.unit), []).append(each)
+    known = {which: _over(those) for which, those in sharing.items()}
+    return {
+        name: replace(
+            each,
+            view=surfaces[name],
+            motion=known[each.motion, each.unit],
+            truth=None if each.truth is None else each.truth * each.scale,
+            distances={other: values / each.unit for other, values in each.distances.items()},
+            unit=1.0,
+        )
+        for name, each in recordings.items()
+    }
+
+
+def _over(recordings: list[Recording]) -> Motion:
+    """The motion that recordings share, in samples at all of their times."""
+    motion, times = recordings[0].motion, np.unique(np.concatenate([r.time for r in recordings]))
     constant = motion.signal is not None and motion.signal.constant
     if motion.signal is not None and motion.signal.times is not None:
         inside = (motion.signal.times > times[0]) & (motion.signal.times < times[-1])
         times = np.unique(np.concatenate([times, motion.signal.times[inside]]))
-    known = sampled(motion, times[:1] if constant else times, recording.unit)
-    truth = None if recording.truth is None else recording.truth * recording.scale
-    return replace(recording, view=registry.surfaces[surface], motion=known, truth=truth, unit=1.0)
+    return sampled(motion, times[:1] if constant else times, recordings[0].unit)
 
 
 def sampled(motion: Motion, times: np.ndarray, unit: float = 1.0) -> Motion:

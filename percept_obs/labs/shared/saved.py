@@ -78,7 +78,7 @@ def place_of(state: Mapping[str, Any]) -> str:
     """HTML of a lab's place in a page, with its data."""
     data = {name: state[name] for name in SHOWN if name in state} | {"texts": _name_of(state["texts"])}
     # The end of a script would end it within a text, too.
-    inside = json.dumps(data, allow_nan=False, default=_as_base64).replace("<", "\\u003c")
+    inside = json.dumps(data, allow_nan=False, default=_as_base64, separators=(",", ":")).replace("<", "\\u003c")
     return f'<div data-percept-obs><script type="application/json">{inside}</script></div>'
 
 

@@ -158,6 +158,7 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     Returns
     -------
     Diagnosis
+        Mistakes that together explain the samples, and those that this motion cannot tell.
 
     Raises
     ------
@@ -166,7 +167,7 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
 
     See Also
     --------
-    percept_obs.figures.causes : draws the estimates
+    percept_obs.figures.causes : Draws the estimates.
 
     Notes
     -----

@@ -22,7 +22,20 @@ X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
 
 
 class BehindCamera(ValueError):
-    """A point is not in front of the imaging surface, so it has no image there."""
+    """A point is not in front of the imaging surface, so it has no image there.
+
+    See Also
+    --------
+    ImagingSurface.sees : Tells which points are in front of it.
+
+    Examples
+    --------
+    >>> from percept_obs import pinhole
+    >>> pinhole().project([0, 0, -1])  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    percept_obs.system.surfaces.base.BehindCamera: the point (0, 0, -1) has the distance -1 from the pinhole; ...
+    """
 
 
 @checked
@@ -37,11 +50,11 @@ class ImagingSurface(OnePoint):
     name : str
         Name in messages.
     image : sequence of sympy expressions
-        Image coordinates of the point (X, Y, Z); they stay when the point is scaled.
+        Image coordinates of the point (X, Y, Z), without unit; they stay when the point is scaled.
     distance : sympy expression
-        Depth or range of the point (X, Y, Z); it scales with the point.
-    ray : sequence of three sympy expressions in y1, y2, ...
-        The point of the surface, at distance 1, whose image coordinates are y1, y2, ...
+        Depth or range in metres of the point (X, Y, Z); it scales with the point.
+    ray : sequence of three sympy expressions
+        The point of the surface, at distance 1, in terms of its image coordinates y1, y2 and so on.
     values : mapping of sympy symbols to floats, optional
         Numbers for the symbols that shape the surface, such as a plane's normal vector.
     region : sequence of sympy expressions, optional

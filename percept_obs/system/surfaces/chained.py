@@ -8,9 +8,14 @@ from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
 def chained() -> ImagingSurface:
     """Return the image plane Y = 1: y1 = X/Y, y2 = Z/Y, inverse depth 1/Y (Ma 2005, (32), p. 69).
 
+    Returns
+    -------
+    ImagingSurface
+        With two image coordinates.
+
     See Also
     --------
-    pinhole
+    pinhole : The plane Z = 1.
 
     Examples
     --------

@@ -35,7 +35,7 @@ def ellipsoid(Q: Sequence[Sequence[float]] | None = None, outputs: int = 2) -> I
     """Return the ellipsoid X^T Q X = 1 around the camera's centre: y = (X, Y) / l, l = sqrt(X^T Q X).
 
     With two outputs it sees the side that faces the camera, with the third, Z/l, all around (Ma 2005, remark in section
-    5, p. 72).  The inverse distance 1/l is last, as on every surface.
+    5, p. 72).
 
     Parameters
     ----------
@@ -44,6 +44,11 @@ def ellipsoid(Q: Sequence[Sequence[float]] | None = None, outputs: int = 2) -> I
     outputs : 2 or 3
         Image coordinates X/l, Y/l, and also Z/l, which follows from y^T Q y = 1 but for its sign.
 
+    Returns
+    -------
+    ImagingSurface
+        With 2 or 3 image coordinates, and l as its distance.
+
     Raises
     ------
     ValueError
@@ -51,7 +56,7 @@ def ellipsoid(Q: Sequence[Sequence[float]] | None = None, outputs: int = 2) -> I
 
     See Also
     --------
-    sphere
+    sphere : That of Q = 1.
 
     Examples
     --------

@@ -8,9 +8,14 @@ from percept_obs.system.surfaces.base import ImagingSurface, X, Y, Z
 def pinhole() -> ImagingSurface:
     """Return the image plane Z = 1: y = (X/Z, Y/Z), inverse depth 1/Z (Ma 2005, (3), p. 64).
 
+    Returns
+    -------
+    ImagingSurface
+        With two image coordinates.
+
     See Also
     --------
-    plane, unified
+    plane, unified : Surfaces of which it is one.
 
     Examples
     --------

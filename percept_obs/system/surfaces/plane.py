@@ -22,6 +22,11 @@ def plane(normal: Sequence[float] | None = None, outputs: int = 2) -> ImagingSur
     outputs : 2 or 3
         Image coordinates X/l, Y/l, and also Z/l, with l = n . X.  The third follows from n . y = 1.
 
+    Returns
+    -------
+    ImagingSurface
+        With 2 or 3 image coordinates, and the distance n . X.
+
     Raises
     ------
     ValueError
@@ -29,7 +34,7 @@ def plane(normal: Sequence[float] | None = None, outputs: int = 2) -> ImagingSur
 
     See Also
     --------
-    pinhole, chained
+    pinhole, chained : Two of them.
 
     Examples
     --------

@@ -13,13 +13,17 @@ from percept_obs.validation import checked
 def sphere(outputs: int = 2) -> ImagingSurface:
     """Return the unit sphere: stereographic projection y = (X, Y) / (R + Z), or the unit direction y = (X, Y, Z) / R.
 
-    The inverse range is 1/R.  The first sees every direction but straight back, the second every direction (Ma 2005,
-    remark in section 5, p. 72).
+    The first sees every direction but straight back, the second every direction (Ma 2005, remark in section 5, p. 72).
 
     Parameters
     ----------
     outputs : 2 or 3
         3 for the unit direction, whose coordinates depend on each other: y . y = 1.
+
+    Returns
+    -------
+    ImagingSurface
+        With 2 or 3 image coordinates, and the range R as its distance.
 
     Raises
     ------
@@ -28,7 +32,7 @@ def sphere(outputs: int = 2) -> ImagingSurface:
 
     See Also
     --------
-    unified, ellipsoid
+    unified, ellipsoid : Surfaces of which it is one.
 
     Examples
     --------

@@ -20,12 +20,17 @@ def unified(xi: float | None = None) -> ImagingSurface:
     mirror; many fisheye lenses have xi above 1.
 
     It sees what lies within arccos(-xi) of the optical axis, or within arccos(-1 / xi) if xi is above 1, where the
-    image folds back.  Its inverse distance is 1/l.
+    image folds back.
 
     Parameters
     ----------
     xi : float, optional
         Parameter of the mirror or lens, 0 or more; the symbol xi when left out.
+
+    Returns
+    -------
+    ImagingSurface
+        With two image coordinates, and l as its distance.
 
     Raises
     ------
@@ -34,7 +39,7 @@ def unified(xi: float | None = None) -> ImagingSurface:
 
     See Also
     --------
-    pinhole, sphere
+    pinhole, sphere : Those of xi = 0 and xi = 1.
 
     Notes
     -----

@@ -3,7 +3,6 @@
 import { withoutRefused } from "../common/model/kernels.js";
 import { same } from "../common/model/settings.js";
 import { readingAt, summaryOf } from "../common/model/words.js";
-import { Film } from "../common/page/film.js";
 import { lettered, ObserverFormulas } from "../common/page/formulas.js";
 import { ImagePlane } from "../common/page/image_plane.js";
 import { Lab } from "../common/page/lab.js";
@@ -48,7 +47,6 @@ export class ObserverLab extends Lab {
       towardsOf: (shown) => shown.foeTowards,
       onMove: (foe) => this.moveFoe(foe),
     });
-    plane.film = new Film(this);
     this.map = plane.map = new MapPicture(this);
     this.planes = [plane, new Scene(this, { image: plane, ...scene }), new SettingsMap(this, axesOf)];
     this.formulas = new ObserverFormulas(this.model, {

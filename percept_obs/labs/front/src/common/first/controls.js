@@ -50,6 +50,18 @@ export function places({ name, label, choices, get, set }) {
   return { row, show, name };
 }
 
+/** A choice among several by their names. */
+export function select({ name, label, choices, get, set }) {
+  const options = choices.map((value) => element("option", { value }, value));
+  const box = element("select", { "data-control": name, onchange: () => set(box.value) }, ...options);
+  const row = element("label", { class: "choice" }, element("span", {}, `${label} `), box);
+  const show = () => {
+    box.value = get();
+    row.hidden = !box.value;
+  };
+  return { row, show, name };
+}
+
 /** A box to tick; `before` is the part of its label that is left out where there is little room. */
 export function tick({ name, label, before = "", get, set }) {
   const own = { type: "checkbox", "data-control": name, "aria-label": `${before} ${label}`.trim() };

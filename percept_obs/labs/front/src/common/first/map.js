@@ -3,10 +3,10 @@
 /** Lines in a direction at most, whatever the numbers are. */
 const MOST_LINES = 500;
 
-/** A line for each metre, or for more where these would be too near; `at` is the map's middle and scale. */
+/** A line for each decimetre or metre, or for more where these would be too near; the list is the middle and scale. */
 export function drawGround(view, [cx, cz, scale], { x, y }, theme) {
   const { width, height } = view;
-  const step = [1, 5, 10, 50, 100, 1000].find((metre) => metre * scale >= 9) ?? 10 ** Math.ceil(Math.log10(9 / scale));
+  const step = [0.1, 1, 5, 10, 50, 100, 1000].find((m) => m * scale >= 9) ?? 10 ** Math.ceil(Math.log10(9 / scale));
   const line = (from, to, k) => view.line([from, to], theme.line, { width: 1, alpha: k % 5 ? 0.18 : 0.5 });
   const about = (/** @type {number} */ middle, /** @type {number} */ reach) => {
     const first = Math.ceil((middle - reach) / step);

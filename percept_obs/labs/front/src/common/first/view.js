@@ -18,6 +18,8 @@ export class View extends LabelledPicture {
     if (this.caption) this.figure.append(this.caption);
     /** @type {{x: number, y: number, text: string} | null} */
     this.pointed = null;
+    /** True where letters stand on a film, and need a ground of their own. */
+    this.plated = false;
   }
 
   /** Begin a picture: an empty canvas, in which captions and buttons have their places already. */
@@ -88,6 +90,20 @@ export class View extends LabelledPicture {
   end() {
     if (this.pointed) this.drawNote(this.pointed);
     super.end();
+  }
+
+  letter(text, x, y, colour, box) {
+    const { context: pen } = this;
+    const [left, top, right, bottom] = box;
+    if (this.plated) {
+      pen.globalAlpha = 0.75;
+      pen.fillStyle = this.ground();
+      pen.beginPath();
+      pen.roundRect(left - 2, top, right - left + 4, bottom - top, 4);
+      pen.fill();
+      pen.globalAlpha = 1;
+    }
+    super.letter(text, x, y, colour, box);
   }
 
   /** Where a note may not reach. */

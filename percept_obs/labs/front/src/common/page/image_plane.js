@@ -127,8 +127,7 @@ export class FramedImage extends LabelledPicture {
  * `arrowsOf`, `alikeOf` and `focusAt` are the scene's.
  */
 export class ImagePlane extends FramedImage {
-  /** The film behind the track, and the map under it, if there are. */
-  film = /** @type {any} */ (null);
+  /** The map under the track, if there is one. */
   map = /** @type {any} */ (null);
 
   constructor(lab, { name, label, tag, onMove, ...parts }) {
@@ -143,7 +142,6 @@ export class ImagePlane extends FramedImage {
     const { map, parts } = this;
     const place = parts.placeOf(shown);
     const inside = (pen, frame) => {
-      this.film?.draw(pen, frame, shown.settings, cursor);
       map?.draw(pen, frame, this.square, shown, theme);
       this.trace(pen, frame, shown, ghost, cursor, theme);
     };

@@ -66,8 +66,9 @@ export class Camera extends PointCamera {
   /** The motion that a recording brings with it, or that settings say, with the surface's own numbers. */
   motion(settings, functions) {
     const recorded = this.model.recordings[settings.scenario];
-    const table = recorded?.motion ?? this.sampledMotion(settings.scenario);
-    const shape = recorded ? [] : shapeOf(settings);
+    if (recorded) return { motion: motionOf(this.model, recorded), shape: [] };
+    const table = this.sampledMotion(settings.scenario);
+    const shape = shapeOf(settings);
     if (table) return { motion: derived(table, "columns", () => withColumns(table)), shape };
     return { motion: isTyped(settings) ? this.typedMotion(settings, functions) : constantMotion(settings), shape };
   }
@@ -88,7 +89,15 @@ export function constantMotion({ A, b }) {
   return { times: [0], rows: [[...A.flat(), ...b]] };
 }
 
-function readTrack(track) {
+/** The motion of a recording, which it may share with others, by its own time. */
+export function motionOf({ motions }, recorded) {
+  const { times, rows } = motions[recorded.motion];
+  const own = () => withColumns({ times: times.map((time) => time - recorded.begin), rows });
+  return derived(recorded, "motion", own);
+}
+
+/** The samples of a recording, and its truth. */
+export function readTrack(track) {
   const number = (value) => (value === null ? NaN : value);
   // A track may have y1 or y2 alone: what is missing stays a column of NaN that nothing measures.
   const both = track.samples.map((row) => ["y1", "y2"].map((name) => number(row[track.names.indexOf(name)] ?? null)));

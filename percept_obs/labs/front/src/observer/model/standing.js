@@ -1,6 +1,7 @@
 // A world that stands still while a camera moves through it: where what the camera sees is, and where it is itself.
 
 import { stepOf } from "../../common/model/path.js";
+import { sampleAt } from "../../common/model/tables.js";
 
 /** @typedef {number[]} Affine  three rows of a matrix and a vector, for x -> M x + v */
 
@@ -70,6 +71,22 @@ export class Standing {
   toCamera(motion, time) {
     return back(this.toWorld(motion, time));
   }
+}
+
+/**
+ * From what a camera sees at a time of a sampled motion to the world, which is what it sees at the first sample; null
+ * where the motion is not rigid.
+ */
+export function wayOf({ times, rows }) {
+  const motionOf = (row) => ({ A: [0, 3, 6].map((k) => row.slice(k, k + 3)), b: row.slice(9, 12) });
+  if (!rows.every((row) => isRigid(motionOf(row).A))) return null;
+  const between = (k) => motionOf(rows[k].map((value, p) => (value + (rows[k + 1] ?? rows[k])[p]) / 2));
+  const maps = [SAME];
+  for (let k = 1; k < times.length; k++) maps.push(after(maps[k - 1], flow(between(k - 1), times[k - 1] - times[k])));
+  return (time) => {
+    const k = sampleAt(times, time);
+    return after(maps[k], flow(between(k), times[k] - time));
+  };
 }
 
 /** Standing things, near and far alike in the image. */

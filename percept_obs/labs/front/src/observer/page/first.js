@@ -1,20 +1,26 @@
 // The first screen of the observer lab: the estimate slides along its ray until the motion that it expects is seen.
 
+import { Film } from "../../common/first/film.js";
 import { FirstScreen } from "../../common/first/screen.js";
-import { valueBetween, within } from "../../common/model/playback.js";
+import { derived } from "../../common/model/derived.js";
+import { between, valueBetween, within } from "../../common/model/playback.js";
 import { affine, imageVelocities } from "../../common/model/velocities.js";
-import { shapeOf, varies } from "../model/camera.js";
+import { motionOf, readTrack, shapeOf, varies } from "../model/camera.js";
 import { translationTowards } from "../model/engine.js";
 import { QUESTIONS } from "../model/questions.js";
-import { apply, flow, isRigid, Standing } from "../model/standing.js";
+import { apply, flow, isRigid, Standing, wayOf } from "../model/standing.js";
 import { coefficientsAt, placesOf } from "./scene.js";
 import { drawImage, MOST } from "./first_image.js";
 import { chartOf, controlsOf, radiusOf, sentence } from "./first_told.js";
 import { drawWorld } from "./first_world.js";
 
 const CAPTIONS = { image: "What the camera sees", world: "The world from above", axis: "Distance over time" };
+/** Where the map is not level, but along the first view. */
+const OF_FILMS = { world: "From above the camera" };
 /** Pixels within which the focus of expansion clicks onto the point. */
 const CLICK = 7;
+/** Pixels within which a press on the film is meant for a track. */
+const NEAR = 24;
 /** Least distance of a point, in metres. */
 const [NEAREST, FARTHEST] = [0.8, 200];
 
@@ -23,8 +29,12 @@ export class ObserverFirst extends FirstScreen {
   seen = /** @type {any} */ (null);
 
   constructor(lab) {
-    super(lab, CAPTIONS, controlsOf(lab), QUESTIONS);
+    const recorded = lab.settings.scenario in lab.model.recordings;
+    // The questions are about a drive, whose settings they change.
+    super(lab, recorded ? { ...CAPTIONS, ...OF_FILMS } : CAPTIONS, controlsOf(lab), recorded ? [] : QUESTIONS);
     this.standing = new Standing();
+    this.film = new Film(lab);
+    this.image.figure.addEventListener("click", (event) => this.pick(event));
     this.focus = this.handle(this.image, {
       ...{ name: "first foe", label: "Focus of expansion, where the camera heads" },
       onMove: (place) => this.steer(this.clicked(place)),
@@ -99,7 +109,48 @@ export class ObserverFirst extends FirstScreen {
     this.moveTo(this.lab.settings.b, place.map((value) => (value * wanted) / distance));
   }
 
+  // Tracks of a film.
+
+  /** The other tracks of the film that are seen at a time of this one, in the image. */
+  others({ scenario }, now) {
+    const { recordings } = this.lab.model;
+    const { film, begin } = recordings[scenario];
+    const found = Object.entries(recordings).flatMap(([name, other]) => {
+      const when = begin + now - other.begin;
+      const there = other.film === film && name !== scenario && when >= 0 && when <= other.time.at(-1);
+      return there ? [{ name, y: sampleOf(other, when) }] : [];
+    });
+    return found.filter(({ y }) => !y.some(Number.isNaN));
+  }
+
+  /** Follow another track from the same frame on. */
+  choose(name) {
+    const { lab } = this;
+    const { recordings } = lab.model;
+    this.touch();
+    this.setWhy(false);
+    lab.state.cursor = this.clock.present() + recordings[lab.settings.scenario].begin - recordings[name].begin;
+    lab.chooseScenario(name);
+  }
+
+  /** Follow the track that is pressed. */
+  pick({ clientX, clientY, target }) {
+    const { left, top } = this.image.figure.getBoundingClientRect();
+    const apart = ({ at: [x, y] }) => Math.hypot(x - (clientX - left), y - (clientY - top));
+    const [nearest] = this.seen.tracks.toSorted((one, other) => apart(one) - apart(other));
+    if (nearest && apart(nearest) < NEAR && !target.closest("button")) this.choose(nearest.name);
+  }
+
   // What is seen at a time.
+
+  /** From what the camera sees at a time to a world that stands, if there is one. */
+  worldOf(settings) {
+    const { lab, standing } = this;
+    const recorded = lab.model.recordings[settings.scenario];
+    if (recorded) return derived(recorded, "way", () => wayOf(motionOf(lab.model, recorded)));
+    if (!isRigid(settings.A) || varies(settings, lab.model)) return null;
+    return (time) => standing.toWorld(settings, time);
+  }
 
   /** Places in metres before the camera: of the point, of the estimate, and functions of the settings. */
   look(scene) {
@@ -113,22 +164,31 @@ export class ObserverFirst extends FirstScreen {
     const stateOf = (rows) => [0, 1, 2].map((c) => valueBetween(rows, width, c, at));
     const state = truth?.length ? stateOf(truth) : null;
     const estimate = stateOf(run.estimate);
-    const y = state ?? estimate;
+    const recorded = lab.model.recordings[settings.scenario];
+    const sample = recorded ? sampleOf(recorded, now) : [NaN];
+    const y = state ?? (sample.some(Number.isNaN) ? estimate : sample);
     const motion = coefficientsAt(lab, shown, functions, at);
     const image = (copy) => Array.from(functions.project([...copy, ...shape], new Float64Array(3)));
     const speedsOf = (place, { A, b }) => imageVelocities(place, (copy) => affine(A, b, copy), image);
     const place = placeOf(state ?? estimate);
     const guess = estimate[2] > 1e-4 ? placeOf(estimate) : null;
     const expected = guess && placeOf([y[0], y[1], estimate[2]]);
-    const rigid = isRigid(settings.A) && !varies(settings, lab.model);
-    const world = rigid ? this.standing.toWorld(settings, now) : null;
+    const toWorld = this.worldOf(settings);
+    const world = toWorld?.(now);
     const inWorld = (where) => (world ? apply(world, where) : where);
+    const simulated = Boolean(world) && !recorded;
+    const film = this.film.films[recorded?.film] ?? null;
+    const rayOf = (seen) => Math.hypot(...functions.ray([seen[0], seen[1], ...shape], new Float64Array(3)));
+    const other = recorded?.measured && derived(recorded, "other", () => otherOf(recorded, rayOf));
+    this.whyButton.hidden = !state;
     this.seen = {
-      ...{ state, estimate, y: y.slice(0, 2), motion, image, place, guess, rigid, run, inWorld, functions },
+      ...{ state, estimate, y: y.slice(0, 2), motion, image, place, guess, run, inWorld, functions },
+      ...{ toWorld, simulated, recorded, other, ray: rayOf(estimate), tracks: [] },
+      ...{ film, up: film && film.extent[2] > film.extent[3] ? -1 : 1 },
       ...{ camera: inWorld([0, 0, 0]), point: inWorld(place), truth: Boolean(state) },
       copies: state && speedsOf(place, motion),
       expects: expected && speedsOf(expected, settings.believed ?? motion)[1],
-      movable: rigid || (state && !varies(settings, lab.model)),
+      movable: simulated || (state && !varies(settings, lab.model)),
       foe: shown.foe,
       radius: radiusOf(shown, shown.radius * y[2]),
       size: shown.radius * y[2],
@@ -152,4 +212,17 @@ export class ObserverFirst extends FirstScreen {
   sentence(scene) {
     return sentence(this, scene);
   }
+}
+
+/** Where a recording sees its point at a time. */
+function sampleOf(recorded, now) {
+  const { time, outputs } = derived(recorded, "track", () => readTrack(recorded));
+  return [0, 1].map((c) => valueBetween(outputs, 2, c, between(time, now)));
+}
+
+/** Another measurement of a recording's distance: its name, and metres along the ray at times. */
+function otherOf(recorded, rayOf) {
+  const { time, outputs } = derived(recorded, "track", () => readTrack(recorded));
+  const [name, measured] = recorded.measured;
+  return { name, time, values: time.map((_, k) => (measured[k] ?? NaN) * rayOf(outputs.subarray(2 * k))) };
 }

@@ -1,8 +1,9 @@
 // What the camera sees, on the first screen: the point, how it moves and how it should, and standing things.
 
-import { within } from "../../common/model/playback.js";
+import { between, valueBetween, within } from "../../common/model/playback.js";
 import { affine } from "../../common/model/velocities.js";
 import { apply, STANDING_THINGS } from "../model/standing.js";
+import { claimed, metres } from "./first_told.js";
 
 /** Names of the copies at other distances. */
 export const HERE = ["half as far", "here", "twice as far"];
@@ -20,33 +21,38 @@ export function drawImage(screen, scene, motion, note) {
   const { width, height } = view;
   const [c1, c2, scale] = /** @type {number[]} */ (view.at);
   const x = (y1) => width / 2 + (y1 - c1) * scale;
-  const y = (y2) => height / 2 - (y2 - c2) * scale;
+  const y = (y2) => height / 2 - seen.up * (y2 - c2) * scale;
   const on = (place) => /** @type {[number, number]} */ ([x(place[0]), y(place[1])]);
   view.avoid(width - 44, height - 27, 44, 27);
+  view.plated = view.figure.classList.toggle("filmed", Boolean(seen.film));
+  if (seen.film) drawFilm(screen, view, scene, seen, on);
   drawDirections(view, seen, theme);
   const { foe, radius, single } = seen;
   if (foe && radius) view.hatched((pen) => hatchAround(pen, on(foe), radius * scale, single, width, height));
-  if (seen.rigid) drawStandingThings(screen, view, scene, seen, on);
+  if (seen.simulated) drawStandingThings(screen, view, scene, seen, on);
   const rows = shown.truth?.length ? shown.truth : shown.runs[0].estimate;
-  view.line(pathOf(rows, shown.width).map(on), theme.ink, { width: 1, alpha: seen.rigid ? 0.15 : 0.35 });
+  view.line(pathOf(rows, shown.width).map(on), theme.ink, { width: 1, alpha: seen.simulated ? 0.15 : 0.35 });
   const [px, py] = on(seen.y);
   if (single === 0) view.line([[px, 0], [px, height]], theme.ink, { width: 1, dash: [2, 5] });
   if (single === 1) view.line([[0, py], [width, py]], theme.ink, { width: 1, dash: [2, 5] });
-  drawArrows(view, scene, seen, [px, py]);
+  if (scene.why || !seen.film) drawArrows(view, scene, seen, [px, py]);
   if (foe) {
     const [fx, fy] = on(foe);
     view.dot(fx, fy, 9, theme.raised, 0);
     view.ring(fx, fy, 10, theme.warning, 2.5);
     view.line([[fx - 5, fy], [fx + 5, fy]], theme.warning, { width: 2 });
     view.line([[fx, fy - 5], [fx, fy + 5]], theme.warning, { width: 2 });
-    const text = seen.rigid ? "focus of expansion" : "FOE";
+    const text = seen.simulated ? "focus of expansion" : "FOE";
     view.tag({ id: "foe", text, at: [fx, fy], colour: theme.warning, rank: 2, gap: 14 });
   }
   const colour = theme.lines[seen.run.order];
   const [gx, gy] = on(seen.estimate);
-  if (!why) view.ring(within(gx, 12, width - 12), within(gy, 12, height - 12), 11, colour);
+  const ghost = /** @type {const} */ ([within(gx, 12, width - 12), within(gy, 12, height - 12), 11]);
+  if (!why && seen.film) view.ring(...ghost, theme.raised, 6);
+  if (!why) view.ring(...ghost, colour);
   if (seen.size) view.ring(px, py, seen.size * scale, theme.ink, 2);
-  view.dot(px, py, 6, theme.ink);
+  view.dot(px, py, seen.film ? 3 : 6, theme.ink);
+  if (seen.film && !why) drawDistances(view, scene, seen, [px, py], colour);
   if (note) view.note(...(note.at === "estimate" ? [gx, gy + 13] : [px, py + 8]), note.text);
   view.end();
   const frame = { box: { left: 8, top: 8, width: width - 16, height: height - 16 }, scale, x, y };
@@ -57,10 +63,16 @@ export function drawImage(screen, scene, motion, note) {
 }
 
 /** Middle and scale of the image in which the path lies. */
-function imageGoal(screen, { shown }, { rigid, foe }) {
+function imageGoal(screen, { shown }, { simulated, film, foe }) {
+  const { width, height } = screen.image.size ?? { width: 400, height: 300 };
+  if (film) {
+    const [left, right, lower, upper] = film.extent;
+    const scale = Math.min(width / Math.abs(right - left), height / Math.abs(upper - lower));
+    return [(left + right) / 2, (lower + upper) / 2, scale];
+  }
   const rows = shown.truth?.length ? shown.truth : shown.runs[0].estimate;
   const around = (c) => (foe ? [foe[c], foe[c]] : [Infinity, -Infinity]);
-  const bounds = rigid ? USUAL.map((pair) => [...pair]) : [0, 1].map(around);
+  const bounds = simulated ? USUAL.map((pair) => [...pair]) : [0, 1].map(around);
   for (const place of pathOf(rows, shown.width)) {
     bounds.forEach((pair, c) => {
       const value = within(place[c], -MOST, MOST);
@@ -69,17 +81,37 @@ function imageGoal(screen, { shown }, { rigid, foe }) {
       pair[1] = Math.max(pair[1], value + 0.18);
     });
   }
-  const { width, height } = screen.image.size ?? { width: 400, height: 300 };
   const scales = bounds.map(([low, high], c) => [width, height][c] / (high - low));
-  return [...bounds.map(([low, high]) => (low + high) / 2), Math.min(...scales) * (rigid ? 1 : 0.9)];
+  return [...bounds.map(([low, high]) => (low + high) / 2), Math.min(...scales) * (simulated ? 1 : 0.9)];
+}
+
+/** The film, and the other tracks that it shows. */
+function drawFilm(screen, view, { shown, now, theme }, seen, on) {
+  const { recorded: { film, begin }, film: { extent: [left, right, lower, upper] } } = seen;
+  const [[west, south], [east, north]] = [on([left, lower]), on([right, upper])];
+  screen.film.draw(view.context, film, begin + now, [west, east, south, north]);
+  seen.tracks = screen.others(shown.settings, now).map(({ name, y }) => ({ name, at: on(y) }));
+  for (const { at } of seen.tracks) view.dot(...at, 3, theme.ink);
+}
+
+/** How far the point is, by the estimate and in truth, or as it was measured otherwise. */
+function drawDistances(view, { shown, theme, now, at: when }, seen, at, colour) {
+  const { other, run, estimate, place, ray, truth } = seen;
+  const deviation = run.deviation && valueBetween(run.deviation, shown.width, 2, when);
+  const text = claimed(ray, estimate[2], deviation);
+  view.tag({ id: "estimate", text, at, colour, rank: 0, gap: 13, towards: [1, -1] });
+  const measured = other && `${other.name} ${metres(valueBetween(other.values, 1, 0, between(other.time, now)))}`;
+  const second = truth ? `true ${metres(Math.hypot(...place))}` : measured;
+  view.tag({ id: "true", text: second, at, colour: theme.ink, rank: 1, gap: 13, towards: [1, 1] });
 }
 
 /** The two directions of the image; the one that is not measured is pale. */
-function drawDirections(view, { single }, theme) {
-  [[26, 0, "y1", 1], [0, -26, "y2", 0]].forEach(([dx, dy, text, other]) => {
+function drawDirections(view, { single, up }, theme) {
+  const [x, y] = [16, up > 0 ? 56 : 18];
+  [[26, 0, "y1", 1], [0, -26 * up, "y2", 0]].forEach(([dx, dy, text, other]) => {
     view.context.globalAlpha = single === other ? 0.3 : 1;
-    view.arrow([16, 56], [dx, dy], theme.muted, 1.3);
-    view.write(text, 16 + 1.5 * Number(dx), 56 + 1.5 * Number(dy), theme.muted);
+    view.arrow([x, y], [dx, dy], theme.muted, 1.3);
+    view.write(text, x + 1.5 * Number(dx), y + 1.5 * Number(dy), theme.muted);
   });
   view.context.globalAlpha = 1;
   view.avoid(36, 36, 36);
@@ -111,11 +143,11 @@ function drawStandingThings(screen, view, scene, { motion, image }, on) {
 }
 
 /** How the point moves in the image, and how it would if the estimate were right; or copies at other distances. */
-function drawArrows(view, { theme, why }, { copies, expects, single, run }, at) {
+function drawArrows(view, { theme, why }, { copies, expects, single, run, up }, at) {
   const [px, py] = at;
   if (!copies) return;
   const scale = view.at[2];
-  const flip = (/** @type {number[]} */ [u, v]) => [u, -v];
+  const flip = (/** @type {number[]} */ [u, v]) => [u, -up * v];
   const shown = (why ? copies : [copies[1], expects]).filter(Boolean).map(flip);
   // One scale, whether the copies are shown or not.
   const all = [...copies, expects].filter(Boolean).map(flip);

@@ -1,10 +1,11 @@
 // What the first screen of the observer lab tells: the chart, the sentence, and its controls.
 
-import { places, range } from "../../common/first/controls.js";
+import { places, range, select } from "../../common/first/controls.js";
 import { columnOf, derived } from "../../common/model/derived.js";
 import { settled } from "../../common/model/errors.js";
 import { between } from "../../common/model/playback.js";
 import { changeAt, same } from "../../common/model/settings.js";
+import { claimedDistances } from "../../common/model/space.js";
 import { percent } from "../../common/model/words.js";
 import { KEPT } from "../../common/page/looks.js";
 import { shapeOf } from "../model/camera.js";
@@ -14,13 +15,16 @@ const OUTPUTS = [
   { text: "both", spoken: "y1 and y2", value: ["y1", "y2"] },
   { text: "y2", spoken: "y2 only", value: ["y2"] },
 ];
-/** The estimate and the truth are written in metres up to this. */
-const FAR = 999;
+/** The estimate and the truth are written in metres up to this, and in centimetres below that. */
+const [FAR, NEARBY] = [999, 2];
+/** Half an interval, as a part of the distance, from which on its ends are written. */
+const WIDE = 0.3;
 
 export function chartOf(screen, scene) {
   const { shown, ghost, theme, secret, now } = scene;
   const { time, truth, settings } = shown;
   const [run] = shown.runs;
+  const { other } = screen.seen;
   const distances = (result, rows) => distancesOf(screen, result, rows);
   const actual = truth?.length ? distances(shown, truth) : null;
   const found = distances(shown, run.estimate);
@@ -39,6 +43,7 @@ export function chartOf(screen, scene) {
       ...(ghost ? [keptLine(scene.kept, ghost.time, distances(ghost, ghost.runs[0].estimate), theme)] : []),
       { id: "estimate", text: "estimate", time, values: found, colour, width: 3, secret },
       ...(actual ? [{ id: "true", text: "true", time, values: actual, colour: theme.ink, width: 1.6 }] : []),
+      ...(other ? [{ id: "other", text: other.name, ...other, colour: theme.ink, width: 1.6 }] : []),
     ],
     spans: unseenSpans(shown),
     found: at ? { time: since, value: found[at.sample], text: within10, colour } : null,
@@ -75,6 +80,7 @@ export function sentence(screen, scene) {
   const { settings, time } = shown;
   const { seen } = screen;
   const [run] = shown.runs;
+  if (seen.other) return `A point without a truth: compare its distance with the ${seen.other.name}.`;
   if (!seen.truth) return "A recording without a truth: the estimate alone is shown.";
   const near = unseenSpans(shown).some(({ begin, end: last }) => begin <= now && now <= last);
   if (why) {
@@ -89,7 +95,7 @@ export function sentence(screen, scene) {
     return `The observer believes another motion: its distance is ${ratio.toFixed(2)} times the true one.`;
   if (near && !found) return "Too near the focus of expansion: near and far move alike, so there is little to learn.";
   if (found) {
-    if (now < end || screen.moved) return `Found: the estimate is on the point, ${distance} away.`;
+    if (now < end || screen.moved || !seen.movable) return `Found: the estimate is on the point, ${distance} away.`;
     return `Found: ${distance}. Now drag the focus of expansion onto the point.`;
   }
   if (now - time[0] < 0.15 * (end - time[0])) return "One image shows the direction of a point, never its distance.";
@@ -108,7 +114,15 @@ export function controlsOf(lab) {
   };
   const rest = () => lab.rest();
   const { low, high } = gain();
+  const { recordings } = lab.model;
+  const filmed = Object.keys(recordings).filter((name) => recordings[name].film !== null);
+  const track = select({
+    ...{ name: "first track", label: "Track", choices: filmed },
+    get: () => lab.settings.scenario,
+    set: (name) => lab.first.choose(name),
+  });
   return [
+    ...(filmed.length > 1 ? [track] : []),
     places({
       ...{ name: "first outputs", label: "Measured", choices: OUTPUTS },
       get: () => (allowed().length < 2 ? -1 : OUTPUTS.findIndex(({ value }) => same(value, lab.settings.outputs))),
@@ -120,7 +134,7 @@ export function controlsOf(lab) {
     }),
     range({
       ...{ name: "first gain", label: "Gain", low: Math.max(low, 1), high, log: true, rest },
-      get: () => lab.settings.gains[observer()][gain().name],
+      get: () => (gain().high > 1 ? lab.settings.gains[observer()][gain().name] : null),
       set: (value) => change(changeAt(lab.settings, `gains.${observer()}.${gain().name}`, value)),
     }),
     range({
@@ -164,7 +178,21 @@ function spansOf(time, holds) {
 }
 
 export function metres(distance) {
-  return distance > FAR ? "∞" : `${distance.toFixed(1)} m`;
+  return distance > FAR ? "∞" : `${distance.toFixed(distance < NEARBY ? 2 : 1)} m`;
+}
+
+/** The distance of an inverse along a ray, with the interval of two deviations that is claimed, if one is. */
+export function claimed(ray, inverse, deviation) {
+  const distance = inverse > 1e-4 ? ray / inverse : Infinity;
+  const [low, high] = (deviation && claimedDistances(inverse, deviation)?.map((value) => ray * value)) || [];
+  if (low === undefined) return metres(distance);
+  const half = (high - low) / 2;
+  if (!(half < WIDE * distance)) {
+    const interval = high > FAR ? `over ${metres(low)}` : `${metres(low)} to ${metres(high)}`;
+    return `${metres(distance)} (${interval})`;
+  }
+  const digits = half < 0.01 ? 3 : 2;
+  return `${distance.toFixed(digits)} ± ${Math.max(half, 0.001).toFixed(digits)} m`;
 }
 
 function median(values) {

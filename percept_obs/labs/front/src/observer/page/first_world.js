@@ -13,7 +13,6 @@ import { metres } from "./first_told.js";
 export function drawWorld(screen, scene, motion, note) {
   const { world: view, seen } = screen;
   const { shown, theme, now, why, ghost } = scene;
-  const { settings } = shown;
   const moving = view.glide(worldGoal(screen, scene, seen), motion);
   view.begin(theme);
   const { width, height } = view;
@@ -30,7 +29,7 @@ export function drawWorld(screen, scene, motion, note) {
     return on(seen.inWorld(direction.map((value) => size * value)));
   };
   drawSight(screen, view, camera, along, theme);
-  if (seen.rigid) {
+  if (seen.simulated) {
     for (const thing of STANDING_THINGS) {
       const [u, v] = on(thing);
       view.context.globalAlpha = 0.7;
@@ -42,7 +41,7 @@ export function drawWorld(screen, scene, motion, note) {
     }
   }
   const { b } = seen.motion;
-  const ahead = along(b.map((value) => (seen.rigid ? -value : value)));
+  const ahead = along(b.map((value) => (seen.toWorld ? -value : value)));
   view.line([camera, ahead], theme.warning, { dash: [6, 5] });
   view.avoidLine(camera, ahead);
   const share = 60 / Math.max(Math.hypot(ahead[0] - camera[0], ahead[1] - camera[1]), 60);
@@ -55,8 +54,8 @@ export function drawWorld(screen, scene, motion, note) {
   drawTicks(view, seen, on, camera, ray, reach, theme, why);
   const past = (rows) => pastOf(screen, scene, rows).map(on);
   const colour = theme.lines[seen.run.order];
-  if (seen.rigid) {
-    const way = timesTo(scene).map((time) => on(apply(screen.standing.toWorld(settings, time), [0, 0, 0])));
+  if (seen.toWorld) {
+    const way = timesTo(scene).map((time) => on(apply(seen.toWorld(time), [0, 0, 0])));
     view.line(way, theme.ink, { width: 2, alpha: 0.35 });
     drawBelieved(screen, view, scene, on, colour, way[0]);
   } else if (shown.truth?.length) view.line(past(shown.truth), theme.ink, { width: 1, alpha: 0.35 });
@@ -105,19 +104,20 @@ function timesTo({ shown, now }) {
 
 /** Where rows of states were in the world, up to the present. */
 function pastOf(screen, { shown, now }, rows) {
-  const { settings, time, width } = shown;
+  const { time, width } = shown;
+  const { toWorld } = screen.seen;
   const placeOf = placesOf(screen.lab, shown);
   const every = Math.max(1, Math.floor(time.length / 300));
   const found = [];
   for (let k = 0; k < time.length && time[k] <= now; k += every) {
     const state = [0, 1, 2].map((c) => rows[width * k + c]);
     const place = state[2] > 1e-4 ? placeOf(state) : [NaN, NaN, NaN];
-    found.push(screen.seen.rigid ? apply(screen.standing.toWorld(settings, time[k]), place) : place);
+    found.push(toWorld ? apply(toWorld(time[k]), place) : place);
   }
   return found;
 }
 
-function worldGoal(screen, scene, { rigid, inWorld, place }) {
+function worldGoal(screen, scene, { toWorld, inWorld, place }) {
   const { shown, why } = scene;
   const { settings, truth, time, width } = shown;
   const placeOf = placesOf(screen.lab, shown);
@@ -130,7 +130,7 @@ function worldGoal(screen, scene, { rigid, inWorld, place }) {
   const rows = truth?.length ? truth : shown.runs[0].estimate;
   for (let k = 0; k <= 40; k++) {
     const sample = Math.round((k * (time.length - 1)) / 40);
-    const map = rigid ? screen.standing.toWorld(settings, time[sample]) : null;
+    const map = toWorld?.(time[sample]);
     const there = (where) => (map ? apply(map, where) : where);
     const stateOf = (table) => [0, 1, 2].map((c) => table[width * sample + c]);
     take(there([0, 0, 0]));
@@ -139,12 +139,13 @@ function worldGoal(screen, scene, { rigid, inWorld, place }) {
     if ((k === 0 || k === 40) && first[2] > 0 && 1 / first[2] < 1.6 / stateOf(rows)[2]) take(there(placeOf(first)));
   }
   if (why) take(inWorld(place.map((value) => 2 * value)));
-  if (settings.believed && rigid) {
+  if (settings.believed && toWorld) {
     const began = apply(flow(settings.believed, scene.end - time[0]), [0, 0, 0]);
-    take(apply(screen.standing.toWorld(settings, scene.end), began));
+    take(apply(toWorld(scene.end), began));
   }
   const size = screen.world.size ?? { width: 350, height: 300 };
-  const scale = Math.min((size.width - 130) / (box[1] - box[0] + 1), (size.height - 90) / (box[3] - box[2] + 0.1));
+  const [across, ahead] = [box[1] - box[0], box[3] - box[2]];
+  const scale = Math.min((size.width - 130) / (across + 0.1 * ahead), (size.height - 90) / (1.01 * ahead));
   return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, Math.max(scale, 1e-6)];
 }
 
@@ -161,12 +162,12 @@ function drawSight(screen, view, camera, along, theme) {
   drawCone(view, camera, edges.map(along), theme);
 }
 
-/** The ray is the ruler of the distance: a tick a metre, or for more where these would be too near. */
+/** The ray is the ruler of the distance: a tick a decimetre or metre, or for more where these would be too near. */
 function drawTicks(view, { place, inWorld }, on, camera, end, reach, theme, why) {
   const length = Math.hypot(...place);
   const far = Math.hypot(end[0] - camera[0], end[1] - camera[1]);
   const [nx, ny] = [-(end[1] - camera[1]) / far, (end[0] - camera[0]) / far];
-  const step = [1, 5, 10, 50, 100, 1000].find((metre) => (metre * far) / reach >= 6) ?? 1e4;
+  const step = [0.1, 1, 5, 10, 50, 100, 1000].find((metre) => (metre * far) / reach >= 6) ?? 1e4;
   for (let k = 1; k < 60; k++) {
     const [u, v] = on(inWorld(place.map((value) => (value * k * step) / length)));
     if (u < 0 || v < 0 || u > view.width || v > view.height) continue;
