@@ -1,7 +1,7 @@
 """A class that hands in: right, wrong, empty, altered, copied and hostile notebooks, and the marks that they must get.
 
-`python tests/course_class.py` makes the copies of 40 students, ten for each of four notebooks, collects them, and prints
-what differs, which marks of intruders were left, and the seconds.
+`python tests/course_class.py` makes the copies of 40 students, of two notebooks, collects them, and prints the seconds,
+what differs from what was put in, and whether a command of theirs had an effect.
 """
 
 import copy
@@ -18,19 +18,21 @@ from percept_obs.exercises.collecting import collect
 from percept_obs.exercises.marking import answered, programs
 from percept_obs.exercises.models import notebooks
 
-STUDENTS = (
-    "Ada Ben Chiara Dmitri Elif Fatima Goran Hana Ines Jamal Kofi Lena Minh Nadia Olu Paula Qiang Rosa Sven Tala "
-    "Uma Viktor Wanda Ximena Yusuf Zoe Ana Bao Carl Dina Emre Femi Gita Hugo Iva Jun Kaya Luca Mira Noor"
-).split(" ")
+STUDENTS = [
+    "Ada", "Ben", "Chiara", "Dmitri", "Elif", "Fatima", "Goran", "Hana", "Ines", "Jamal", "Kofi", "Lena", "Minh",
+    "Nadia", "Olu", "Paula", "Qiang", "Rosa", "Sven", "Tala", "Uma", "Viktor", "Wanda", "Ximena", "Yusuf", "Zoe",
+    "Ana", "Bao", "Carl", "Dina", "Emre", "Femi", "Gita", "Hugo", "Iva", "Jun", "Kaya", "Luca", "Mira", "Noor",
+]  # fmt: skip
 HOSTILE = (  # each would leave a file if a word of it ran; the answer after it is the right one, or none
     ("import pathlib; pathlib.Path({mark!r}).touch()\n{name} = {answer!r}", "right"),
     ("{name} = __import__('pathlib').Path({mark!r}).touch()", "unread"),
     ("!touch {mark}\n{name} = {answer!r}", "unread"),
     ("%%bash\ntouch {mark}", "unread"),
     ("{name} = " + "(" * 900 + "1" + ")" * 900, "unread"),
-    ("{name} = '__import__(\"pathlib\").Path(\"{mark}\").touch()'", "unread"),
+    ('{name} = \'__import__("pathlib").Path("{mark}").touch()\'', "unread"),
     ("{name} = ['=cmd|touch {mark}', [[[]]]]", "unread"),
     ("{name} = " + "9" * 3900, "unread"),
+    ("{name} = " + "-" * 3900 + "1", "unread"),
     ("{name} = 1e308 * 10", "unread"),
     ("{name} = {{'gain': '__import__(\"pathlib\").Path(\"{mark}\").touch()'}}", "unread"),
     ("{name} = '=HYPERLINK(\"{mark}\")'", "unread"),
