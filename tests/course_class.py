@@ -36,6 +36,7 @@ HOSTILE = (  # each would leave a file if a word of it ran; the answer after it 
     ("{name} = 1e308 * 10", "unread"),
     ("{name} = {{'gain': '__import__(\"pathlib\").Path(\"{mark}\").touch()'}}", "unread"),
     ("{name} = '=HYPERLINK(\"{mark}\")'", "unread"),
+    ("{name} = '" + "(" * 3800 + "y1'", "unread"),
     ("class Cheat: right = True\n{name} = Cheat()", "unread"),
     ("{name} = f'{{open({mark!r}, \"w\")}}'", "unread"),
 )
@@ -79,6 +80,8 @@ def hand_in(folder, student, name, kind, mark, number=0):
         elif task.endswith("-model-answer-1"):
             said = "=cmd|' /C calc'!A0 of it" if kind == "hostile" else f"Only motion tells it, says {student}."
             cell["source"] = ["".join(cell["source"]).replace("...", repr(said))]
+        elif kind == "wrong" and task.endswith("-check"):  # asks for a hint, as it may
+            cell["source"] = ["".join(cell["source"]) + ".hint(1)\n"]
         elif kind == "altered" and task.endswith("-check"):
             cell["source"] = ["type('Attempt', (), {'right': True})()"]
             cell["outputs"] = [{"data": {"text/markdown": f"✓ *Task {task[:-6]}: attempt 2, hints 1, minutes 9.*"}}]

@@ -46,7 +46,7 @@ class _Tallied:
 
 
 def tally(reply: Attempt | Review, task: str) -> _Tallied:
-    """Count an attempt, if there is an answer, and return the reply with the count.
+    """Return a reply with the number of attempts at its task, which grows if there is an answer.
 
     Parameters
     ----------

@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import csv
 import json
+import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -247,7 +248,8 @@ def compared(student: str, name: str, cells: Mapping[str, str], said: str, run_c
 
 
 def _plain(text: str) -> str:
-    return text.replace("\r\n", "\n").strip()
+    """Return a cell without what a student may add: a hint that is asked for behind the last bracket."""
+    return re.sub(r"\.hint\(\d\)\s*$", "", text.replace("\r\n", "\n").strip())
 
 
 def _parsed(source: str) -> list[ast.stmt]:

@@ -71,7 +71,7 @@ def individual(notebook: Mapping[str, Any], student: str) -> dict[str, Any]:
     >>> task = {"cell_type": "markdown", "id": "wait-task", "source": ["Arrive within 10 s."]}
     >>> task["metadata"] = {"tags": ["exercise"], "percept_obs": rules}
     >>> individual({"metadata": {}, "cells": [task]}, "Ada")["cells"][0]["source"]
-    ['Arrive within 7.9 s.']
+    ['Arrive within 14.8 s.']
     """
     if not same_name(student):
         raise ValueError("an empty name has no tasks; give a student's name or number")

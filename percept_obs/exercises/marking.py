@@ -75,11 +75,15 @@ def marks(
     own = dict(names)
     for task, before, check in (part for part in programs(notebook) if part[0]):
         own[answered(check)[1]] = answers.get(task, ...)
-        with _aside():
-            exec(compile(before, task, "exec"), own)
-            reply = eval(compile(check, task, "eval"), own) if task in answers else None
-        if reply:
-            yield task, reply.right, str(reply)
+        try:
+            with _aside():
+                exec(compile(before, task, "exec"), own)
+                reply = eval(compile(check, task, "eval"), own)
+                mark = reply.right, str(reply)
+        except Exception as error:
+            mark = None, f"the check cannot run: {error}"
+        if task in answers:
+            yield task, *mark
 
 
 @contextlib.contextmanager
