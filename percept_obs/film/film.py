@@ -107,7 +107,7 @@ class Film(Footage):
         if self.seen is not None:
             first += f", with corners to {self.seen.error:.2g} pixels"
         if self.focal_deviation:
-            first += f" and the focal length to {100 * self.focal_deviation:.1g} %"
+            first += f" and the focal length to {100 * self.focal_deviation:.2g} %"
         said = [f"{first}; {corners} tracks of the board's corners, {len(self) - corners} of other points."]
         said += [f"{each.sentence[0].upper()}{each.sentence[1:]}: {each.evidence}." for each in self.findings]
         if len(time) < CUT_OFF * self.video.count:

@@ -23,7 +23,7 @@ from percept_obs.recording.track_table import runs
 from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked
 
-SHORTEST_FILM = 2.0
+SHORTEST_FILM = 1.5
 """Seconds that a film lasts at least."""
 
 GAP = 0.3
@@ -137,7 +137,7 @@ def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
     enough = int((count >= FEWEST).sum())
     if sighting.twice.mean() > 0.1:
         raise ValueError(f"'{video.path}' shows two boards with the same markers; leave one in the picture")
-    if np.ptp(sighting.time) < SHORTEST_FILM:
+    if np.ptp(sighting.time) < SHORTEST_FILM or len(count) < FEWEST_PICTURES:
         raise ValueError(
             f"'{video.path}' is too short: {len(count)} pictures in {np.ptp(sighting.time):.1f} s; film for 10 to 20 s"
         )
