@@ -1,12 +1,15 @@
 """A class that hands in: right, wrong, empty, altered, copied and hostile notebooks, and the marks that they must get.
 
 `python tests/course_class.py` makes the copies of 40 students, of two notebooks, collects them, and prints the seconds,
-what differs from what was put in, and whether a command of theirs had an effect.
+what differs from what was put in, and whether a command of theirs had an effect.  With names, `python
+tests/course_class.py 03 14`, it runs these notebooks and prints how many of their own solutions pass their own checks,
+at both ends of all ranges and for five names.
 """
 
 import copy
 import json
 import os
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -15,7 +18,7 @@ from mistakes import MISTAKES
 
 from percept_obs.exercises import individual, students_copy
 from percept_obs.exercises.collecting import collect
-from percept_obs.exercises.marking import answered, programs
+from percept_obs.exercises.marking import answered, lesson, programs
 from percept_obs.exercises.models import notebooks
 
 STUDENTS = [
@@ -43,12 +46,23 @@ HOSTILE = (  # each would leave a file if a word of it ran; the answer after it 
 BROKEN = ('{"cells": ', '{"cells": {}}', "[" * 100_000, '{"cells": [{"id": "goals", "source": 7}]}', "\x00")
 
 
+def solved(notebook, names):
+    """Yield each task of a notebook with its own solution's answer and the check's reply, after a lesson's names."""
+    for cell in (each for each in notebook["cells"] if each["cell_type"] == "code"):
+        if "solution" in cell["metadata"].get("tags", ()):
+            exec("".join(cell["source"]), names)
+        for task, before, check in programs({"cells": [cell]}):
+            if task:
+                exec(before, names)
+                yield task, names[answered(check)[1]], eval(check, names)
+
+
 def solutions(name, student):
-    """The right answers to a student's own tasks, as text and numbers: the shipped solutions after their lesson."""
+    """The right answers to a student's own tasks, whose solutions need no lesson."""
     notebook, names, found = individual(notebooks()[name], student), {}, {}
     checks = {task: answered(check)[1] for task, _, check in programs(notebook) if task}
     for cell in notebook["cells"]:
-        if cell.get("id") in checks:
+        if cell["id"] in checks:
             exec("".join(cell["source"]), names)
             found[cell["id"]] = names[checks[cell["id"]]]
     return found
@@ -122,7 +136,31 @@ def differences(table, expected):
     ]
 
 
-if __name__ == "__main__":
+def at_ends(end):
+    """Draw the first choice everywhere, or the last."""
+    return lambda student, what, count: range(count)[end]
+
+
+def pass_everywhere(stem):
+    """Print what does not pass of a notebook's own solutions, and how many do."""
+    module = sys.modules["percept_obs.exercises.individual"]
+    name = next(name for name in notebooks() if name.startswith(stem))
+    names, by_name, right = lesson(notebooks()[name]), module.drawn, 0
+    ways = {"low": at_ends(0), "high": at_ends(-1)} | dict.fromkeys(STUDENTS[:5], by_name)
+    for student, draw in ways.items():
+        module.drawn = draw
+        for task, answer, reply in solved(individual(notebooks()[name], student), dict(names)):
+            right += reply.right is True
+            if not reply.right:
+                print(name, student, task, answer, reply)
+    module.drawn = by_name
+    print(name, right, "pass")
+
+
+if __name__ == "__main__" and len(sys.argv) > 1:
+    for stem in sys.argv[1:]:
+        pass_everywhere(stem)
+elif __name__ == "__main__":
     with tempfile.TemporaryDirectory() as place:
         mark = Path(place, "intruder")
         given, expected = hand_out(Path(place, "class"), ["00_start.ipynb", "08_check_a_derivation.ipynb"], mark=mark)
