@@ -1,10 +1,11 @@
-"""The film that ships is what the renderer draws, its distances are true, and it reads as it is described."""
+"""The film that ships is what the renderer draws, and its distances are true; who only turns is told not to trust."""
 
 import av
 import numpy as np
 import pandas as pd
 import pytest
 from film_renderer import example_film as draw
+from film_renderer import quick_film
 
 from percept_obs.film import example_film, read_film
 
@@ -44,3 +45,13 @@ def test_it_shows_the_board_and_the_camera_is_found(made):
     assert np.isfinite(off).mean() > 0.95
     assert np.sqrt(np.nanmean(np.square(off))) < 0.15
     assert film.camera.focal[0] == pytest.approx(540, rel=3 * film.focal_deviation)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "least", "most"), [("sideways", 0.8, 1.0), ("turn", 0.0, 0.2)])
+def test_moving_sideways_is_trusted_and_turning_is_not(kind, least, most, tmp_path):
+    film = read_film(quick_film(11, tmp_path, kind=kind, tremor=0.3)[0])
+    trusts = [run.trust() for run in film.runs[::4]]
+    assert least <= np.mean([trust.trusted for trust in trusts]) <= most
+    if kind == "turn":
+        assert "Do not trust the estimate: the filter itself is not sure enough" in trusts[0].sentence

@@ -1,4 +1,4 @@
-"""Example of a film of a board: film.mp4, which is drawn so that all is known, and distances.csv with true distances."""
+"""Example of a film of a board: film.mp4, drawn so that all is known, and distances.csv, true distances in it."""
 
 from pathlib import Path
 
