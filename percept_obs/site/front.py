@@ -16,7 +16,7 @@ from percept_obs.site.pages import slug
 STEPS = {
     "See it, derive it": ("00", "01", "08"),
     "Observe": ("02", "03", "04"),
-    "Go further": ("05", "06", "07", "10"),
+    "Go further": ("05", "06", "07", "10", "15", "16"),
     "Doubt": ("09", "11", "12", "13", "14"),
 }
 """Steps of the course, each with its notebooks."""
@@ -31,7 +31,7 @@ LEARN = {
     "own.html": "Your own recording",
 }
 TEACH = {
-    "guide.html#two-lesson-plans": "Two lesson plans: 45 and 90 minutes",
+    "guide.html#three-lesson-plans": "Three lesson plans: 45 and 90 minutes, and one with films",
     "guide.html#what-students-often-get-wrong": "What students often get wrong",
     "guide.html": "The teacher's guide",
 }
