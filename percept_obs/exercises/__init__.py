@@ -2,6 +2,19 @@
 
 from percept_obs.exercises.answers import Attempt, choose, derive, reach
 from percept_obs.exercises.copies import COPIES, stub, students_copy
+from percept_obs.exercises.graders import GRADERS, nbgrader_copy, otter_copy
 from percept_obs.exercises.models import model_answer
 
-__all__ = ["COPIES", "Attempt", "choose", "derive", "model_answer", "reach", "stub", "students_copy"]
+__all__ = [
+    "COPIES",
+    "GRADERS",
+    "Attempt",
+    "choose",
+    "derive",
+    "model_answer",
+    "nbgrader_copy",
+    "otter_copy",
+    "reach",
+    "stub",
+    "students_copy",
+]
