@@ -163,9 +163,11 @@ def _write(path: Path, text: str) -> None:
 
 def _generate(source: Path, target: Path, names: Mapping[str, Any], builder: str = "html") -> None:
     from sphinx.application import Sphinx
+    from sphinx.util.docutils import docutils_namespace
 
     faults, settings = io.StringIO(), {**SETTINGS, **names}
-    app = Sphinx(source, None, target, source / ".doctrees", builder, settings, None, faults, freshenv=True)
-    app.build(force_all=True)
+    with docutils_namespace():
+        app = Sphinx(source, None, target, source / ".doctrees", builder, settings, None, faults, freshenv=True)
+        app.build(force_all=True)
     if faults.getvalue():
         raise SiteFault(f"the site has faults:\n{faults.getvalue()}")
