@@ -11,7 +11,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from percept_obs.exercises import COPIES, individual
+from percept_obs.exercises import COPIES, GRADERS, individual
 from percept_obs.exercises.models import notebooks
 from percept_obs.validation import write_whole
 
@@ -27,7 +27,7 @@ def copy_notebooks(directory: Path, readers: str = "students", student: str = ""
         if target.exists():
             print(f"kept    {target}")
         else:
-            copy = json.dumps(COPIES[readers](notebook), indent=1, ensure_ascii=False)
+            copy = json.dumps({**COPIES, **GRADERS}[readers](notebook), indent=1, ensure_ascii=False)
             write_whole(target, f"{copy}\n".encode())
             print(f"copied  {target}")
 
@@ -251,7 +251,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add = command(lab, "open the notebooks in JupyterLab")
     copies = "where your copies live (default: ./%(default)s); nothing is overwritten"
     add("directory", nargs="?", type=Path, default=Path("percept_obs_notebooks"), metavar="DIR", help=copies)
-    add("--for", **readers)
+    tools = f"{readers['help']}; nbgrader and otter get the sources of their assignments"
+    add("--for", **readers | {"choices": (*COPIES, *GRADERS), "help": tools})
     add(
         "--student", default="", metavar="NAME", help="make the exercises a student's own: numbers follow from the name"
     )

@@ -15,7 +15,7 @@ from typing import Any
 
 from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED, Ledger
-from percept_obs.site import front_ends
+from percept_obs.site import front_ends, slides
 from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
 from percept_obs.site.front import first_lab, front
 from percept_obs.site.named import named
@@ -31,7 +31,7 @@ from percept_obs.site.pages import Pages, contents, ledger_pages, reference
 
 __all__ = ["NEEDS", "SiteFault", "build"]
 
-NEEDS = ("sphinx", "myst_nb", "furo", "latex2mathml", "nbclient")
+NEEDS = ("sphinx", "myst_nb", "furo", "sphinx_revealjs", "latex2mathml", "nbclient")
 """Modules of the extra "site"."""
 
 TEXTS = resources.files("percept_obs.site") / "texts"
@@ -99,9 +99,9 @@ def build(
     """
     address = address and address.rstrip("/") + "/"
     with tempfile.TemporaryDirectory() as folder:
-        source = Path(folder)
+        source, shown = Path(folder) / "site", Path(folder) / "slides"
         lab = first_lab()
-        _notebooks(source, notebooks, parallel, lab, tell)
+        _notebooks(source, shown, notebooks, parallel, lab, tell)
         tell("judging the papers' equations")
         for path, text in [
             *ledger_pages(ledgers),
@@ -116,6 +116,8 @@ def build(
             shutil.copytree(pictures, source / "pictures")
         settings = {"html_baseurl": address, "html_context": {"versions": above_versions(address)}}
         _generate(source, target, {"myst_substitutions": named(notebooks, ledgers, exam), **settings})
+        slides.prepare(shown, (TEXTS / "slides.css").read_text("utf-8"))
+        _generate(shown, target / "slides", slides.SETTINGS, "revealjs")
     if address:
         write_sitemap(target, address)
     tell(f"wrote {target / 'index.html'}")
@@ -123,12 +125,13 @@ def build(
 
 def _notebooks(
     source: Path,
+    shown: Path,
     notebooks: Mapping[str, Mapping[str, Any]],
     parallel: int,
     lab: Mapping[str, Any],
     tell: Callable[[str], object],
 ) -> None:
-    """Run the notebooks, and write them with the scripts of their labs and of the first page's."""
+    """Run the notebooks, and write them and their slides, with the scripts of their labs and of the first page's."""
     import nbformat
 
     states: dict[bytes, Mapping[str, Any]] = {lab["texts"]: lab}
@@ -138,9 +141,11 @@ def _notebooks(
     for name, notebook in run_all(notebooks, parallel, missing):
         tell(f"{'wrote' if name in missing else 'ran'} {name}")
         states |= {state["texts"]: state for state in labs_of(notebook).values()}
+        _write(shown / name, nbformat.writes(without_widgets(slides.slides_of(notebook), SCRIPTS)))
         _write(source / "notebooks" / name, nbformat.writes(without_widgets(notebook, SCRIPTS)))
     stems = [name.removesuffix(".ipynb") for name in notebooks]
     _write(source / "notebooks" / "index.md", contents("The course", "Read the notebooks in this order.", stems))
+    _write(shown / "index.md", contents("Slides", "The notebooks as slides; the arrow keys turn them.", stems))
     _write(source / "_static" / "labs.js", library_of(states.values()))
     shutil.copy(STARTER, source / "_static")
 
@@ -158,11 +163,13 @@ def _write(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
-def _generate(source: Path, target: Path, names: Mapping[str, Any]) -> None:
+def _generate(source: Path, target: Path, names: Mapping[str, Any], builder: str = "html") -> None:
     from sphinx.application import Sphinx
+    from sphinx.util.docutils import docutils_namespace
 
     faults, settings = io.StringIO(), {**SETTINGS, **names}
-    app = Sphinx(source, None, target, source / ".doctrees", "html", settings, None, faults, freshenv=True)
-    app.build(force_all=True)
+    with docutils_namespace():
+        app = Sphinx(source, None, target, source / ".doctrees", builder, settings, None, faults, freshenv=True)
+        app.build(force_all=True)
     if faults.getvalue():
         raise SiteFault(f"the site has faults:\n{faults.getvalue()}")
