@@ -40,7 +40,7 @@ def lab(options: argparse.Namespace) -> int:
     if options.copy_only:
         return 0
     if util.find_spec("jupyterlab") is None:
-        raise _Mistake(f"JupyterLab is missing; get it with: {sys.executable} -m pip install jupyterlab", 1)
+        raise _Mistake(f'JupyterLab is missing; get it with: {sys.executable} -m pip install "percept-obs[lab]"', 1)
 
     # As an address rather than a file: so the link that JupyterLab prints leads to the notebook as well.
     address = f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}"

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from percept_obs import PixelCamera, Poses
 from percept_obs.film import Board
-from percept_obs.film.faults import Sightings
+from percept_obs.film.faults import find_faults
 
 BOARD = Board()
 FOCAL, BEND = 1000.0, 0.05
@@ -67,7 +67,7 @@ def spoiled(draw, pixels, size, noise=0.2, correlated=0.0, outliers=0.0, lost=0.
 
 
 def read(time, pixels, size, places=BOARD.points, count=30):
-    """The lens from some frames by OpenCV, and a pose for each frame with six corners, as readers of films have them."""
+    """The lens from some frames by OpenCV, and a pose for each frame with six corners, as a reader has them."""
     seen = np.isfinite(pixels).all(axis=-1)
     good = np.flatnonzero(seen.sum(axis=1) >= 12)
     chosen = good[np.linspace(0, len(good) - 1, count).astype(int)]
@@ -120,15 +120,16 @@ FAULTS = {
 }
 
 
-def sighted(seed, fault, correlated=(0, 0.5), duration=(12, 20)):
-    """Sightings of a film with a fault, with the camera and poses that a reader makes of them, and the read-out."""
+def filmed(seed, fault="clean", correlated=(0, 0.5), **path):
+    """Faults found in a film of 12 to 20 s, and its read-out along x and y."""
     draw = np.random.default_rng([seed, 5])
     size = (1280, 720) if draw.random() < 0.7 else (720, 1280)
-    time = np.arange(int(30 * draw.uniform(*duration))) / 30
-    path = in_a_hand(draw, draw.uniform(0.45, 0.7) if size[0] > size[1] else draw.uniform(0.55, 0.7), 0.08)
-    noise, outliers, late = draw.uniform(0.1, 0.3), draw.choice([0, 0.01]), draw.choice([-1, 1])
+    time = np.arange(int(30 * draw.uniform(12, 20))) / 30
+    far = {"distance": draw.uniform(0.4, 0.6)} if size[0] > size[1] else {"distance": 0.6, "sway": 0.08}
+    moved = in_a_hand(draw, **far | path)
+    noise, outliers, late = draw.uniform(0.05, 0.2), draw.choice([0, 0.01]), draw.choice([-1, 1])
     given = {key: value(draw) if callable(value) else value for key, value in FAULTS[fault].items()}
     readout = late * given.pop("readout", 0) * np.array([size[0] < size[1], size[0] > size[1]])
-    pixels = frames(path, time, size, readout, **given)
+    pixels = frames(moved, time, size, readout, **given)
     pixels = spoiled(draw, pixels, size, noise, draw.choice(correlated), outliers)
-    return Sightings(time, pixels, BOARD.points, size), *read(time, pixels, size), readout
+    return find_faults(time, pixels, BOARD, size, *read(time, pixels, size)), readout

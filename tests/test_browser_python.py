@@ -29,8 +29,9 @@ PURE_AS_WELL = {"psygnal", "wcwidth"}
 
 
 @pytest.mark.slow
-def test_a_course_runs_without_threads_processes_and_extras(tmp_path):
-    command = [sys.executable, HERE / "without_threads.py", tmp_path]
+@pytest.mark.parametrize("extra", [[], ["data"]], ids=["plain", "data"])
+def test_a_course_runs_without_threads_processes_and_other_extras(tmp_path, extra):
+    command = [sys.executable, HERE / "without_threads.py", tmp_path, *extra]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stderr
     assert {path.name for path in tmp_path.iterdir()} == {
@@ -43,7 +44,8 @@ def is_pure(name):
 
 
 def test_every_package_that_is_required_is_pure_or_built_for_the_browser():
-    found = {name.lower(): wanted for name, wanted in required().items()}
+    found = {name.lower(): wanted for name, wanted in required(extra="data").items()}
+    assert not {"pandas", "pyyaml"} & set(map(str.lower, required())), "a plain install has grown"
     assert {"numpy", "sympy", "anywidget", "ipython", "traitlets"} <= set(found)
     assert {name.lower() for name in found if not is_pure(name)} <= {*BUILT_FOR_PYODIDE, *PURE_AS_WELL}
     assert not {"numba", "psutil", "pyzmq", "tornado", "jupyterlab"} & set(found)
@@ -54,6 +56,6 @@ def test_every_package_that_is_required_is_pure_or_built_for_the_browser():
 def test_the_wheel_has_nothing_compiled():
     files = [path for path in (HERE.parent / "percept_obs").rglob("*") if "node_modules" not in path.parts]
     assert not [path for path in files if path.suffix in (".so", ".pyd", ".dll", ".c", ".pyx")]
-    settings = (HERE.parent / "pyproject.toml").read_text()
+    settings = (HERE.parent / "pyproject.toml").read_text("utf-8")
     assert 'build-backend = "hatchling.build"' in settings
     assert "hooks" not in settings, "which could make the wheel one for a single machine"

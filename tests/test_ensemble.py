@@ -113,6 +113,7 @@ def test_true_and_believed_motion_and_surface_vary(hold):
     assert_alike(found.sel(**one, believed_b1=0.45, seed=0), run, 0.0, 1e-9)
 
 
+@pytest.mark.slow
 def test_the_motion_may_vary_over_time_and_so_may_the_clock():
     motion = affine(EQ35.motion.A.subs(EQ35.motion.values), lambda t: [0.5, 0.25 + 0.1 * np.sin(t), 0.3])
     scenario = Scenario("waving", motion, (1.0, 1.5, 2.5), 5.0, pinhole())

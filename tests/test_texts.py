@@ -45,6 +45,16 @@ def test_the_exam_s_solutions_compute_what_they_say():
     assert all(">>> " in question for question in questions)
 
 
+@pytest.mark.slow
+def test_the_lines_of_the_tour_run_and_give_what_they_say():
+    names = {}
+    for block in re.findall(r"```python\n(.*?)```", ON_THE_SITE["tour.md"], re.DOTALL):
+        exec(compile(block, "<tour.md>", "exec"), names)
+    assert names["review"].right is False
+    assert "b3" in str(names["review"].hint(2))
+    assert "10 %" in str(names["run"].verdict())
+
+
 def test_every_notebook_stands_in_the_lecture_map():
     lectures = GUIDE[GUIDE.index("| lecture |") : GUIDE.index("## Two lesson plans")]
     assert set(SECTIONS) <= set(re.findall(r'nb\["(\d\d)"\]', lectures))

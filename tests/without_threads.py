@@ -1,8 +1,9 @@
 """Python as in a browser: no threads, processes or sockets, and of all packages only those that percept_obs requires.
 
-    python without_threads.py FOLDER
+    python without_threads.py FOLDER [EXTRA]
 
-builds labs and saves them in the folder, follows observers, draws, compares, judges; any warning is an error.
+builds labs and saves them in the folder, follows observers, draws, judges; any warning is an error.  With the extra
+"data" it also compares and runs an ensemble, and says without it how to get it.
 """
 
 import _thread
@@ -20,17 +21,16 @@ import matplotlib
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-PLATFORM = {"sys_platform": "emscripten", "platform_system": "Emscripten", "extra": ""}
 
-
-def required(name="percept-obs"):
+def required(name="percept-obs", extra=""):
     """Names of the packages that one requires in a browser, and of those that they require."""
     found = {}
+    platform = {"sys_platform": "emscripten", "platform_system": "Emscripten", "extra": extra}
 
     def add(name):
         for text in importlib.metadata.requires(name) or ():
             wanted = Requirement(text)
-            if (wanted.marker is None or wanted.marker.evaluate(PLATFORM)) and wanted.name not in found:
+            if (wanted.marker is None or wanted.marker.evaluate(platform)) and wanted.name not in found:
                 found[wanted.name] = wanted.specifier
                 add(wanted.name)
 
@@ -55,9 +55,9 @@ def refuse(*args, **kwargs):
     raise RuntimeError("can't start what a browser does not have")
 
 
-def as_in_a_browser(more=()):
+def as_in_a_browser(extra="", more=()):
     """Take away what a browser's Python does not have; `more` are packages that are there all the same."""
-    there = {canonicalize_name(name) for name in [*required(), "percept-obs", *more]}
+    there = {canonicalize_name(name) for name in [*required(extra=extra), "percept-obs", *more]}
     packages = importlib.metadata.packages_distributions().items()
     absent = {module for module, names in packages if not {canonicalize_name(name) for name in names} & there}
     sys.meta_path[:] = [Among(finder, absent) for finder in sys.meta_path]
@@ -72,7 +72,6 @@ def work(folder):
     import percept_obs as po
     from percept_obs import figures, labs, papers
     from percept_obs.recording import scenarios
-    from percept_obs.studies.comparison import compare
 
     sys.platform = "emscripten"  # what asks, asks now; the packages below were made for this machine
     assert "numba" not in sys.modules
@@ -82,7 +81,6 @@ def work(folder):
     run = po.track(recording, po.ibo(form))
     assert str(run.verdict()).startswith("converged")
     figures.runs_over_time(run).figure.savefig(folder / "run.svg")
-    assert len(compare([recording], [po.ibo(form), po.ekf(form)])) == 2
     assert papers.judge([papers.DE_LUCA2008])
     assert po.check("a13 - a33 y1", "a13 - y1 a33")
     for make in (labs.observer_lab, labs.points_lab, labs.structure_lab):
@@ -90,10 +88,25 @@ def work(folder):
         assert lab.analyse()["sentences"]
         lab.save(folder / f"{lab.kind}.html")
     assert labs.derivation_desk(student="Ada").analysis["steps"]
-    assert po.ensemble(scenario, po.ibo(form), seeds=3, duration=1.0, chunk=1).sizes["seed"] == 3
+    return scenario, recording, form
+
+
+def work_on_data(scenario, recording, form):
+    """Make tables and an ensemble; return what is said if that cannot be done."""
+    import percept_obs as po
+    from percept_obs.studies.comparison import compare
+
+    try:
+        assert len(compare([recording], [po.ibo(form), po.ekf(form)])) == 2
+        assert po.ensemble(scenario, po.ibo(form), seeds=3, duration=1.0, chunk=1).sizes["seed"] == 3
+    except ModuleNotFoundError as error:
+        return str(error)
+    return ""
 
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    as_in_a_browser(more=["xarray"])  # which a browser's Python has, for who asks for an ensemble
-    work(Path(sys.argv[1]))
+    folder, extra = Path(sys.argv[1]), "".join(sys.argv[2:])
+    as_in_a_browser(extra, more=["xarray"] if extra else [])  # which a browser's Python has, for who asks for ensembles
+    missing = work_on_data(*work(folder))
+    assert missing == ("" if extra else 'pandas is missing; get it with: python -m pip install "percept-obs[data]"')

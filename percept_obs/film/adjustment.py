@@ -60,6 +60,12 @@ class Corners:
     lens: Array
     bases: Sequence[Array]
 
+    def lens_of(self, state: State) -> Array:
+        """Focal lengths, principal point and distortion."""
+        lens = self.lens.copy()
+        lens[: len(LENS)] += state.own[0, LENS] * ([lens[0]] * 4 + [1] * 5)
+        return lens
+
 
 @dataclass(frozen=True, eq=False)
 class State:
@@ -77,7 +83,8 @@ def start(pixels: Array, places: Array, size: Array, camera: PixelCamera, poses:
     gap = np.diff(time) > 3 * np.median(np.diff(time))
     lens = np.zeros(4 + max(5, len(camera.distortion)))
     lens[: 4 + len(camera.distortion)] = *camera.focal, *camera.centre, *camera.distortion
-    bases = [np.ones((len(time), 1))] * FOCUS[0] + [_hats(time, 2.0, 60)] + [_hats(time, 0.35, 100)] * 2
+    focus = np.hstack([_hats(time, 3.0, 60), _hats(time, 0.6, 100) / 4])  # fast changes are small ones
+    bases = [*[np.ones((len(time), 1))] * FOCUS[0], focus, *[_hats(time, 0.35, 100)] * 2]
     even = ~(np.append(gap, False) | np.append(False, gap))
     R = np.swapaxes(poses.rotation.as_matrix(), 1, 2)
     state = State(R, -(R @ poses.position[..., None])[..., 0], np.zeros((len(time), len(bases))), seen)
@@ -136,9 +143,9 @@ class Fit:
         return self.normals[SINGLY in columns]
 
 
-def adjusted(corners: Corners, state: State, columns: Sequence[int], passes: int = PASSES) -> tuple[State, Fit]:
+def adjusted(corners: Corners, state: State, columns: Sequence[int], passes: int | None = None) -> tuple[State, Fit]:
     """Return poses and columns that explain the corners best, all other columns being 0."""
-    for _ in range(passes):
+    for _ in range(passes or PASSES):
         state, fit, change = _step(corners, state, columns)
         if change < SETTLED:
             break
@@ -193,8 +200,7 @@ def _rows(corners: Corners, state: State) -> tuple[Array, Array, Array]:
     import cv2
     from scipy.interpolate import CubicSpline
 
-    (K, n), own, lens = corners.seen.shape, state.own, corners.lens.copy()
-    lens[:9] += own[0, LENS] * ([lens[0]] * 4 + [1] * 5)
+    (K, n), own, lens = corners.seen.shape, state.own, corners.lens_of(state)
     x, y, _ = (corners.places - corners.places.mean(axis=0)).T / np.ptp(corners.places, axis=0).max() * 2
     axes = state.R[:, None, :, [2, 2, 2, 0]] * np.stack([x * x, x * y, y * y, x], axis=1)[:, None]
     X = np.swapaxes(state.R @ corners.places.T, 1, 2) + state.p[:, None] + axes @ own[0, SHAPE]

@@ -24,7 +24,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
-from percept_obs.validation import bar
+from percept_obs.validation import bar, load_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -154,8 +154,7 @@ class Film(Footage):
         Its columns are point, seconds (that it was seen), distance and claimed (two standard deviations) in metres,
         reference ("board" or "triangulation") and its distance, error (relative), and trusted with the reason.
         """
-        import pandas as pd
-
+        pd = load_pandas()
         rows = []
         for run in bar(self.runs, "judging"):
             recording, trust = run.recording, run.trust()

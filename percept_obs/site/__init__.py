@@ -112,6 +112,8 @@ def build(
             _write(source / path, text)
         tell("writing the pages")
         (source / "_static" / CARD).write_bytes(card())
+        with resources.as_file(TEXTS / "pictures") as pictures:
+            shutil.copytree(pictures, source / "pictures")
         settings = {"html_baseurl": address, "html_context": {"versions": above_versions(address)}}
         _generate(source, target, {"myst_substitutions": named(notebooks, ledgers, exam), **settings})
     if address:
@@ -146,7 +148,7 @@ def _notebooks(
 def _texts(exam: bool) -> Pages:
     """Yield the texts written by hand, and the table of front ends."""
     yield "front_ends.md", front_ends.page()
-    for text in (each for each in TEXTS.iterdir() if exam or each.name != "exam.md"):
+    for text in (each for each in TEXTS.iterdir() if each.is_file() and (exam or each.name != "exam.md")):
         folder = {".css": "_static/", ".html": "_templates/"}.get(Path(text.name).suffix, "")
         yield folder + text.name, text.read_text("utf-8")
 
