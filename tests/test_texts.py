@@ -56,7 +56,7 @@ def test_the_lines_of_the_tour_run_and_give_what_they_say():
 
 
 def test_every_notebook_stands_in_the_lecture_map():
-    lectures = GUIDE[GUIDE.index("| lecture |") : GUIDE.index("## Three lesson plans")]
+    lectures = GUIDE[GUIDE.index("| lecture |") : GUIDE.index("## Lesson plans")]
     assert set(SECTIONS) <= set(re.findall(r'nb\["(\d\d)"\]', lectures))
 
 
@@ -65,6 +65,15 @@ def test_the_sections_that_the_guide_names_exist():
     assert len(found) > 20
     for notebook, first, _, last in found:
         assert {int(first), int(last or first)} <= SECTIONS[notebook], (notebook, first, last)
+
+
+def test_each_learning_goal_has_an_exercise_that_is_there():
+    plans = GUIDE[GUIDE.index("## Lesson plans") : GUIDE.index("## What students")]
+    goals = re.findall(r"^(?:- |\| \d \| ).*$", plans, re.MULTILINE)
+    assert len(goals) == 3 + 4 + 8
+    for goal in goals:
+        ((notebook, number),) = re.findall(r'nb\["(\d\d)"\] }}, exercise (\d)', goal)
+        assert f"**Exercise {number}:" in "".join(p.read_text("utf-8") for p in NOTEBOOKS.glob(f"{notebook}_*.ipynb"))
 
 
 @pytest.mark.parametrize("minutes", [45, 90])

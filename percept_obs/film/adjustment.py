@@ -17,12 +17,14 @@ POSE = 6
 """Numbers of a frame's pose; what frames share has a column each."""
 
 LENS, SHUTTER, SHAPE, FOCUS, SHIFT = (0, 1, 2, 3, 6, 7, 8, 9, 10), (4, 5), (11, 12, 13, 14), (15,), (16, 17)
-SINGLY = 18
-"""Columns: what the camera's focal lengths and principal point lack, in focal lengths, and its distortion; seconds of
-read-out along x and y; metres by which the board is bent (three) and stretched; over time, the relative focal length,
-and the picture's shift against the lens in pixels."""
+"""Columns: what the camera lacks of both focal lengths, of the second one and of the principal point, in focal lengths,
+and of distortion; seconds of read-out along x and y; metres by which the board is bent (three) and stretched; over
+time, the relative focal length, and the picture's shift against the lens in pixels."""
 
-USUAL = np.array([0.1, 0.1, 0.1, 0.1, 0.02, 0.02, 1, 5, 0.1, 0.1, 20, *[2e-3] * 4, 0.03, 20, 20])
+SINGLY = 18
+"""Stands for shifts of single pictures, which have no numbers of the film."""
+
+USUAL = np.array([0.1, 3e-3, 0.03, 0.03, 0.02, 0.02, 0.3, 0.2, 2e-3, 2e-3, 0.1, *[2e-3] * 4, 0.03, 20, 20])
 """Usual sizes of the columns, their standard deviations before anything is seen."""
 
 JITTER = 10.0
@@ -61,9 +63,10 @@ class Corners:
     bases: Sequence[Array]
 
     def lens_of(self, state: State) -> Array:
-        """Focal lengths, principal point and distortion."""
-        lens = self.lens.copy()
-        lens[: len(LENS)] += state.own[0, LENS] * ([lens[0]] * 4 + [1] * 5)
+        """Return focal lengths, principal point and distortion."""
+        lens, own = self.lens.copy(), state.own[0]
+        lens[:9] += own[list(LENS)] * ([lens[0]] * 4 + [1] * 5)
+        lens[1] += own[0] * self.lens[0]
         return lens
 
 
@@ -125,27 +128,36 @@ class Normal:
 class Fit:
     """Normal equations, the second ones for pictures of which each is shifted by itself, and pixels that are left.
 
-    The `excess` is what noise does not explain of these, by chance at `sure` standard deviations.  The shutter `moved`
-    the corners so far; their `speed` is in pixels a second.
+    Where frames may have a lens of their own, the mean square is 1 + `ratio` times the noise's, in `count` values.
+    The shutter `moved` the corners so far; their `speed` is in pixels a second.
     """
 
     normals: tuple[Normal, Normal]
     noise: float
     left: float
-    excess: float
-    sure: float
-    wider: float
+    ratio: float
+    count: int
     moved: Array
     speed: Array
+
+    @property
+    def excess(self) -> float:
+        """Pixels that noise does not explain."""
+        return self.noise * math.sqrt(max(self.ratio, 0.0))
+
+    @property
+    def sure(self) -> float:
+        """Standard deviations of chance by which they are there."""
+        return self.ratio * math.sqrt(self.count / 2)
 
     def normal(self, columns: Sequence[int]) -> Normal:
         """Normal equations for some columns."""
         return self.normals[SINGLY in columns]
 
 
-def adjusted(corners: Corners, state: State, columns: Sequence[int], passes: int | None = None) -> tuple[State, Fit]:
+def adjusted(corners: Corners, state: State, columns: Sequence[int], passes: int = PASSES) -> tuple[State, Fit]:
     """Return poses and columns that explain the corners best, all other columns being 0."""
-    for _ in range(passes or PASSES):
+    for _ in range(passes):
         state, fit, change = _step(corners, state, columns)
         if change < SETTLED:
             break
@@ -186,10 +198,8 @@ def _step(corners: Corners, state: State, columns: Sequence[int]) -> tuple[State
     used = corners.seen & (size <= FAR * np.fmax(np.nanmedian(size), np.nanmedian(size, axis=1))[:, None])
     count = (ALONE - POSE - 2 * (SINGLY in columns)) * int(even.sum()) - len(values)
     ratio = float(((y - A @ step)[:, : ALONE - POSE] ** 2 * weight).sum()) / count - 1
-    rms, excess = float(np.sqrt(np.mean(left[used] ** 2))), math.sqrt(max(ratio, 0) * noise)
-    fit = Fit(
-        normals, math.sqrt(noise), rms, excess, ratio * math.sqrt(count / 2), math.sqrt(1 + max(ratio, 0)), moved, speed
-    )
+    rms = float(np.sqrt(np.mean(left[used] ** 2)))
+    fit = Fit(normals, math.sqrt(noise), rms, ratio, count, moved, speed)
     after = State(turn @ state.R, (turn @ state.p[..., None] + pose[:, 3:])[..., 0], own, used)
     return after, fit, float(np.abs(change[used]).max())
 
@@ -209,6 +219,7 @@ def _rows(corners: Corners, state: State) -> tuple[Array, Array, Array]:
     zoom = 1 + own[:, None, FOCUS]
     slopes, about = slopes.reshape(K, n, 2, -1) * zoom[..., None], seen.reshape(K, n, 2) - lens[2:4]
     pixels = lens[2:4] + zoom * about + own[:, None, SHIFT]
+    slopes[..., POSE] += slopes[..., POSE + 1]
     spline = CubicSpline(corners.time, pixels)
     speed, growth = spline(corners.time, 1), spline(corners.time, 2)
     share = corners.pixels / corners.size - 0.5

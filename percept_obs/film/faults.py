@@ -10,15 +10,28 @@ from itertools import chain, combinations
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.film.adjustment import FOCUS, LENS, SHAPE, SHIFT, SHUTTER, SINGLY, Corners, Fit, State, adjusted, start
+from percept_obs.film.adjustment import (
+    FOCUS,
+    LENS,
+    PASSES,
+    SHAPE,
+    SHIFT,
+    SHUTTER,
+    SINGLY,
+    Corners,
+    Fit,
+    State,
+    adjusted,
+    start,
+)
 from percept_obs.film.board import Board
 from percept_obs.film.sharpness import SHARE
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
 from percept_obs.studies.diagnosis import Finding
 
-SURELY = 4.0
-"""Standard deviations from which on a fault is named; with it, the corners must be as much likelier."""
+CLEARLY, SURELY = 5.0, 4.0
+"""Logarithm by which corners are likelier with a fault that is named, and standard deviations of what else is named."""
 
 FEWEST, FEWEST_CORNERS = 30, 8
 """Pictures with a pose that are needed, and corners in each of them."""
@@ -50,16 +63,16 @@ class Faults:
     """Findings, and what is corrected by them.
 
     A pixel (u, v) of a picture of w x h is exposed at t + (u/w - 1/2) readout[0] + (v/h - 1/2) readout[1], in seconds,
-    with standard deviations.  `corners` are those at the time t itself, `camera` is the lens from all pictures without
-    the faults, and `noise` that of the corners in pixels.
+    with standard deviations.  `corners` are those at the time t itself, `noise` is their deviation in pixels, and
+    `camera` the lens that explains them all, few wild ones left out.
     """
 
     findings: tuple[Finding, ...]
     readout: Array
     deviation: Array
     corners: Array
-    camera: PixelCamera
     noise: float
+    camera: PixelCamera
 
 
 @dataclass(frozen=True)
@@ -114,22 +127,23 @@ def find_faults(
 ) -> Faults:
     """Return what spoils a film, by name, from the corners of a board and the width of its edges in the pictures.
 
-    Corners have the shape (K, n, 2), NaN where unseen; poses, at some of the times, are X_board = R X_camera + p.  Poses,
-    lens and faults are fitted to the corners together.  A fault is named if it is worth it, and if the corners are
-    surely likelier with it; noise that is correlated in time is allowed for.
+    Corners have the shape (K, n, 2), NaN where unseen; poses, at some of the times, are X_board = R X_camera + p.
+    They, the lens and the faults are fitted to the corners together.  A fault is named if it is worth it, and if the
+    corners are clearly likelier with it; noise that is correlated in time is allowed for.
     """
     rows = np.searchsorted(time, poses.time)
-    enough = int((np.isfinite(corners[rows]).all(axis=-1).sum(axis=1) >= FEWEST_CORNERS).sum())
-    if enough < FEWEST:
+    good = np.isfinite(corners[rows]).all(axis=-1).sum(axis=1) >= FEWEST_CORNERS
+    if good.sum() < FEWEST:
         raise ValueError(
-            f"{enough} pictures with a pose show {FEWEST_CORNERS} corners of the board; {FEWEST} are needed to find "
-            "faults: film for longer, with the board in the picture"
+            f"{good.sum()} pictures with a pose show {FEWEST_CORNERS} corners of the board, and {FEWEST} are needed to "
+            "find faults: film for longer, with the board in the picture"
         )
+    rows, poses = rows[good], Poses(poses.time[good], poses.position[good], poses.orientation[good])
     given, state = start(corners[rows], board.points, np.array(size, dtype=float), camera, poses)
     parts: tuple[Part, ...] = ()
     left = []
     for search in range(ROUNDS):  # at first at the given lens, for a wrong one may stand for a fault
-        state, fit = adjusted(given, state, _columns(parts), passes=1 if search == 0 else None)
+        state, fit = adjusted(given, state, _columns(parts), passes=PASSES if search else 1)
         left.append(fit.left)
         before, parts = parts, max(CHOICES, key=lambda each: _worth(fit, each))
         if search and parts == before:
@@ -147,7 +161,7 @@ def find_faults(
     straight[rows] -= fit.moved
     lens = given.lens_of(state).tolist()
     fitted = PixelCamera(lens[:2], lens[2:4], size, lens[4:])
-    return Faults(tuple(findings), readout[:, 0], readout[:, 1], straight, fitted, fit.noise)
+    return Faults(tuple(findings), readout[:, 0], readout[:, 1], straight, fit.noise, fitted)
 
 
 def _columns(parts: tuple[Part, ...]) -> list[int]:
@@ -158,7 +172,7 @@ def _columns(parts: tuple[Part, ...]) -> list[int]:
 def _worth(fit: Fit, parts: tuple[Part, ...]) -> float:
     """Logarithm of the corners' likelihood, less what each fault must add to it."""
     columns = _columns(parts)
-    return fit.normal(columns).likelihood(columns) - SURELY**2 / 2 * len(parts)
+    return fit.normal(columns).likelihood(columns) - CLEARLY * len(parts)
 
 
 def _size(given: Corners, state: State, fit: Fit, part: Part, parts: tuple[Part, ...]) -> tuple[float, float]:
@@ -171,7 +185,7 @@ def _size(given: Corners, state: State, fit: Fit, part: Part, parts: tuple[Part,
         own, base = normal.owner[chosen] == column, given.bases[column]
         variance += float(((base @ covariance[np.ix_(own, own)]) * base).sum(axis=1).mean())
     size = math.sqrt((values**2).sum(axis=1).mean())
-    return math.copysign(size, values[0, 0]), fit.wider * math.sqrt(variance)
+    return math.copysign(size, values[0, 0]), math.sqrt(variance * (1 + max(fit.ratio, 0.0)))
 
 
 def _of_fit(state: State, fit: Fit, parts: tuple[Part, ...]) -> Iterator[Finding]:

@@ -37,7 +37,7 @@ NEEDS = ("sphinx", "myst_nb", "furo", "sphinx_revealjs", "latex2mathml", "nbclie
 TEXTS = resources.files("percept_obs.site") / "texts"
 SCRIPTS = "".join(f'<script defer src="../_static/{name}"></script>' for name in ("labs.js", "alone.js"))
 
-SETTINGS = {
+SETTINGS: dict[str, Any] = {
     "project": "percept_obs",
     "release": metadata.version("percept_obs"),
     "language": "en",
@@ -117,7 +117,8 @@ def build(
         settings = {"html_baseurl": address, "html_context": {"versions": above_versions(address)}}
         _generate(source, target, {"myst_substitutions": named(notebooks, ledgers, exam), **settings})
         slides.prepare(shown, (TEXTS / "slides.css").read_text("utf-8"))
-        _generate(shown, target / "slides", slides.SETTINGS, "revealjs")
+        extensions = [*SETTINGS["extensions"], "sphinx_revealjs"]
+        _generate(shown, target / "slides", {**slides.SETTINGS, "extensions": extensions}, "revealjs")
     if address:
         write_sitemap(target, address)
     tell(f"wrote {target / 'index.html'}")

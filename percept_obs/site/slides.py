@@ -13,7 +13,6 @@ NEXT = "```{revealjs-break}\n:notitle:\n```"
 KINDS = ("text/html", "image/svg+xml", "image/png", "text/latex", "text/markdown", "text/plain")
 
 SETTINGS: dict[str, Any] = {
-    "extensions": ["myst_nb", "sphinx.ext.autodoc", "percept_obs.site.extension", "sphinx_revealjs"],
     "html_css_files": [],
     "revealjs_static_path": ["_static"],
     "revealjs_css_files": ["slides.css"],
