@@ -1,17 +1,22 @@
 """Python as in a browser: no threads, processes or sockets, and of all packages only those that percept_obs requires.
 
-    python without_threads.py FOLDER
+    python without_threads.py FOLDER              builds labs and saves them, follows observers, draws, compares, judges
+    python without_threads.py modules             imports every module of percept_obs
+    python without_threads.py NOTEBOOK.ipynb      runs all its cells
 
-builds labs and saves them in the folder, follows observers, draws, compares, judges; any warning is an error.
+Any warning is an error.
 """
 
 import _thread
 import importlib.metadata
+import json
 import multiprocessing.process
 import os
+import pkgutil
 import socket
 import subprocess
 import sys
+import sysconfig
 import threading
 import warnings
 from pathlib import Path
@@ -19,6 +24,9 @@ from pathlib import Path
 import matplotlib
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+
+IN_LITE = ["filterpy", "xarray"]
+"""Packages that the notebooks of the JupyterLite get besides."""
 
 PLATFORM = {"sys_platform": "emscripten", "platform_system": "Emscripten", "extra": ""}
 
@@ -93,7 +101,39 @@ def work(folder):
     assert po.ensemble(scenario, po.ibo(form), seeds=3, duration=1.0, chunk=1).sizes["seed"] == 3
 
 
+def import_all():
+    """Import every module of the package and print how many there are."""
+    import percept_obs
+
+    found = [module.name for module in pkgutil.walk_packages(percept_obs.__path__, "percept_obs.")]
+    found.remove("percept_obs.site.kernels")  # processes themselves
+    for name in found:
+        importlib.import_module(name)
+    print(len(found))
+
+
+def run(notebook):
+    """Run the cells of a notebook."""
+    from IPython.core.interactiveshell import InteractiveShell
+    from traitlets.config import Config
+
+    shell = InteractiveShell.instance(config=Config(HistoryManager={"enabled": False}))  # which has a thread of its own
+    shell.display_formatter.active_types = shell.display_formatter.format_types  # pictures and markup, too
+    warnings.simplefilter("error")
+    sysconfig.get_config_vars()  # of this machine, for which the packages were made
+    sys.platform = "emscripten"
+    for cell in json.loads(notebook.read_bytes())["cells"]:
+        if cell["cell_type"] == "code":
+            shell.run_cell("".join(cell["source"])).raise_error()
+
+
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    as_in_a_browser(more=["xarray"])  # which a browser's Python has, for who asks for an ensemble
-    work(Path(sys.argv[1]))
+    as_in_a_browser(more=IN_LITE)
+    what = Path(sys.argv[1])
+    if what.suffix == ".ipynb":
+        run(what)
+    elif what.name == "modules":
+        import_all()
+    else:
+        work(what)
