@@ -90,14 +90,17 @@ def exam(options: argparse.Namespace) -> int:
 
 def site(options: argparse.Namespace) -> int:
     """Write the course as pages that need neither Python nor a network, with live labs, equations and reference."""
-    from percept_obs.site import NEEDS, SiteFault, build
+    from percept_obs.site import NEEDS, SiteFault, build, lite
     from percept_obs.validation import needed
 
     _refuse_a_file(options.directory)
     copies = {name: COPIES[options.readers](notebook) for name, notebook in notebooks().items()}
     try:
         needed("site", *NEEDS)
-        build(options.directory, copies, exam=options.readers == "teachers", address=options.address)
+        if options.python:
+            needed("lite", *lite.NEEDS)
+        exam = options.readers == "teachers"
+        build(options.directory, copies, exam=exam, address=options.address, python=options.python)
     except (SiteFault, OSError, ModuleNotFoundError) as error:
         raise _Mistake(str(error), 1) from None
     return 0
@@ -279,6 +282,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add("--for", **readers)
     stand = "where the pages will stand, for links to themselves and a sitemap"
     add("--address", default="", metavar="URL", help=stand)
+    add(
+        "--python", action="store_true", help="add JupyterLite, in which a reader runs the notebooks without installing"
+    )
 
     add = command(check, "judge the papers' equations")
     add("places", nargs="*", metavar="PLACE", help='such as "(38)", 38 or "figure 3" (default: all)')

@@ -203,6 +203,9 @@ def test_the_call_alone_says_in_which_language_it_runs(monkeypatch):
     assert points_kernel.choose(None, 1) == "python"
     monkeypatch.setattr(kernels, "find_spec", lambda name: None)
     assert kernels.choose(None, many) == "python"
+    monkeypatch.setattr("percept_obs.validation.environment.find_spec", lambda name: None)
+    with pytest.raises(ModuleNotFoundError, match=r"numba is missing; get it with: .*fast"):
+        kernels.choose("numba", 1)
 
 
 def test_a_run_is_made_in_the_language_that_was_chosen(monkeypatch):

@@ -1,18 +1,23 @@
 """Python as in a browser: no threads, processes or sockets, and of all packages only those that percept_obs requires.
 
     python without_threads.py FOLDER [EXTRA]
+    python without_threads.py modules
+    python without_threads.py NOTEBOOK.ipynb
 
-builds labs and saves them in the folder, follows observers, draws, judges; any warning is an error.  With the extra
-"data" it also compares and runs an ensemble, and says without it how to get it.
+builds labs and saves them in the folder, follows observers, draws, judges, and with the extra "data" also compares and
+runs an ensemble, or says without it how to get it; imports every module; or runs a notebook.  Any warning is an error.
 """
 
 import _thread
 import importlib.metadata
+import json
 import multiprocessing.process
 import os
+import pkgutil
 import socket
 import subprocess
 import sys
+import sysconfig
 import threading
 import warnings
 from pathlib import Path
@@ -20,6 +25,9 @@ from pathlib import Path
 import matplotlib
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+
+IN_LITE = ["filterpy", "xarray"]
+"""Packages that the notebooks of the JupyterLite get besides."""
 
 
 def required(name="percept-obs", extra=""):
@@ -104,9 +112,39 @@ def work_on_data(scenario, recording, form):
     return ""
 
 
+def import_all():
+    """Import every module of the package and print how many there are."""
+    import percept_obs
+
+    found = [module.name for module in pkgutil.walk_packages(percept_obs.__path__, "percept_obs.")]
+    found.remove("percept_obs.site.kernels")  # processes themselves
+    for name in found:
+        importlib.import_module(name)
+    print(len(found))
+
+
+def run(notebook):
+    """Run the cells of a notebook."""
+    from IPython.core.interactiveshell import InteractiveShell
+    from traitlets.config import Config
+
+    shell = InteractiveShell.instance(config=Config(HistoryManager={"enabled": False}))  # which has a thread of its own
+    shell.display_formatter.active_types = shell.display_formatter.format_types  # pictures and markup, too
+    warnings.simplefilter("error")
+    sysconfig.get_config_vars()  # of this machine, for which the packages were made
+    sys.platform = "emscripten"
+    for cell in json.loads(notebook.read_bytes())["cells"]:
+        if cell["cell_type"] == "code":
+            shell.run_cell("".join(cell["source"])).raise_error()
+
+
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    folder, extra = Path(sys.argv[1]), "".join(sys.argv[2:])
-    as_in_a_browser(extra, more=["xarray"] if extra else [])  # which a browser's Python has, for who asks for ensembles
-    missing = work_on_data(*work(folder))
-    assert missing == ("" if extra else 'pandas is missing; get it with: python -m pip install "percept-obs[data]"')
+    what, extra = Path(sys.argv[1]), "".join(sys.argv[2:])
+    if what.suffix == ".ipynb" or what.name == "modules":
+        as_in_a_browser("data", IN_LITE)
+        run(what) if what.suffix else import_all()
+    else:
+        as_in_a_browser(extra, ["xarray"] if extra else [])  # which a browser's Python has, for who asks for ensembles
+        missing = work_on_data(*work(what))
+        assert missing == ("" if extra else 'pandas is missing; get it with: python -m pip install "percept-obs[data]"')

@@ -15,7 +15,7 @@ from typing import Any
 
 from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED, Ledger
-from percept_obs.site import front_ends, slides
+from percept_obs.site import front_ends, lite, slides
 from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
 from percept_obs.site.front import first_lab, front
 from percept_obs.site.named import named
@@ -70,6 +70,7 @@ def build(
     tell: Callable[[str], object] = print,
     exam: bool = False,
     address: str = "",
+    python: bool = False,
 ) -> None:
     """Build the site.
 
@@ -91,11 +92,14 @@ def build(
         Where the site will stand, ``"https://example.org/course/"``; with it pages say their own address, and there is
         a list of them all for search engines.  If it ends with a version, as ``".../course/1.2/"``, pages lead to the
         folder above, where the others stand.
+    python : bool
+        Whether JupyterLite stands beside the pages, with the notebooks and a Python that runs in the reader's browser.
 
     Raises
     ------
     SiteFault
-        If a notebook does not run, or a page has a fault such as a link that leads nowhere.
+        If a notebook does not run, a page has a fault such as a link that leads nowhere, or JupyterLite cannot be
+        built.
     """
     address = address and address.rstrip("/") + "/"
     with tempfile.TemporaryDirectory() as folder:
@@ -114,13 +118,17 @@ def build(
         (source / "_static" / CARD).write_bytes(card())
         with resources.as_file(TEXTS / "pictures") as pictures:
             shutil.copytree(pictures, source / "pictures")
-        settings = {"html_baseurl": address, "html_context": {"versions": above_versions(address)}}
+        context = {"versions": above_versions(address), "python": lite.PLACES if python else {}}
+        settings = {"html_baseurl": address, "html_context": context}
         _generate(source, target, {"myst_substitutions": named(notebooks, ledgers, exam), **settings})
         slides.prepare(shown, (TEXTS / "slides.css").read_text("utf-8"))
         extensions = [*SETTINGS["extensions"], "sphinx_revealjs"]
         _generate(shown, target / "slides", {**slides.SETTINGS, "extensions": extensions}, "revealjs")
     if address:
         write_sitemap(target, address)
+    if python:
+        tell("building JupyterLite")
+        lite.write_lite(target, notebooks)
     tell(f"wrote {target / 'index.html'}")
 
 
