@@ -1,12 +1,14 @@
 """Corners of a board as a camera in a hand would see them, with known faults, and what a reader makes of them."""
 
-import cv2
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from percept_obs import PixelCamera, Poses
 from percept_obs.film import Board
-from percept_obs.film.faults import Sightings
+from percept_obs.film.faults import find_faults
+from percept_obs.film.lens import find_lens, find_poses
 
 BOARD = Board()
 FOCAL, BEND = 1000.0, 0.05
@@ -66,27 +68,10 @@ def spoiled(draw, pixels, size, noise=0.2, correlated=0.0, outliers=0.0, lost=0.
     return found
 
 
-def read(time, pixels, size, places=BOARD.points, count=30):
-    """The lens from some frames by OpenCV, and a pose for each frame with six corners, as readers of films have them."""
-    seen = np.isfinite(pixels).all(axis=-1)
-    good = np.flatnonzero(seen.sum(axis=1) >= 12)
-    chosen = good[np.linspace(0, len(good) - 1, count).astype(int)]
-    things = [places[seen[k]].astype(np.float32) for k in chosen]
-    images = [pixels[k][seen[k]].astype(np.float32) for k in chosen]
-    _, matrix, lens, _, _ = cv2.calibrateCamera(things, images, size, None, None, flags=FLAGS)
-    lens = lens.ravel()[:5]
-    rows, p, R = [], [], []
-    for k in np.flatnonzero(seen.sum(axis=1) >= 6):
-        _, turn, move = cv2.solvePnP(places[seen[k]], pixels[k][seen[k]], matrix, lens)
-        back = cv2.Rodrigues(turn)[0].T
-        rows.append(k)
-        p.append(-back @ move.ravel())
-        R.append(back)
-    camera = PixelCamera((matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2]), size, lens.tolist())
-    return camera, Poses(time[rows], np.array(p), np.array(R))
-
-
-FLAGS = cv2.CALIB_FIX_K3
+def read(time, pixels, size):
+    """The lens and a pose for each picture, as a reader of films has them."""
+    camera = find_lens(pixels, BOARD.points, size).camera
+    return camera, find_poses(time, pixels, BOARD.points, camera).poses
 
 
 def shift(draw):
@@ -120,15 +105,34 @@ FAULTS = {
 }
 
 
-def sighted(seed, fault, correlated=(0, 0.5), duration=(12, 20)):
-    """Sightings of a film with a fault, with the camera and poses that a reader makes of them, and the read-out."""
+@dataclass(frozen=True)
+class Sight:
+    """A film, what a reader makes of it, and the truth about it."""
+
+    time: np.ndarray
+    pixels: np.ndarray
+    size: tuple
+    path: object
+    readout: np.ndarray
+
+    @cached_property
+    def read(self):
+        return read(self.time, self.pixels, self.size)
+
+    @cached_property
+    def found(self):
+        return find_faults(self.time, self.pixels, BOARD, self.size, *self.read)
+
+
+def sight(seed, fault="clean", correlated=(0, 0.5), time=None, places=BOARD.points, **moved):
+    """Film of 12 to 20 s with a fault, from a hand that may have moved in another way."""
     draw = np.random.default_rng([seed, 5])
     size = (1280, 720) if draw.random() < 0.7 else (720, 1280)
-    time = np.arange(int(30 * draw.uniform(*duration))) / 30
-    path = in_a_hand(draw, draw.uniform(0.45, 0.7) if size[0] > size[1] else draw.uniform(0.55, 0.7), 0.08)
-    noise, outliers, late = draw.uniform(0.1, 0.3), draw.choice([0, 0.01]), draw.choice([-1, 1])
+    usual = np.arange(int(30 * draw.uniform(12, 20))) / 30
+    far = {"distance": draw.uniform(0.4, 0.6)} if size[0] > size[1] else {"distance": 0.6, "sway": 0.08}
+    path, time = in_a_hand(draw, **far | moved), usual if time is None else time
+    noise, outliers, late = draw.uniform(0.05, 0.2), draw.choice([0, 0.01]), draw.choice([-1, 1])
     given = {key: value(draw) if callable(value) else value for key, value in FAULTS[fault].items()}
     readout = late * given.pop("readout", 0) * np.array([size[0] < size[1], size[0] > size[1]])
-    pixels = frames(path, time, size, readout, **given)
-    pixels = spoiled(draw, pixels, size, noise, draw.choice(correlated), outliers)
-    return Sightings(time, pixels, BOARD.points, size), *read(time, pixels, size), readout
+    pixels = frames(path, time, size, readout, places=places, **given)
+    return Sight(time, spoiled(draw, pixels, size, noise, draw.choice(correlated), outliers), size, path, readout)

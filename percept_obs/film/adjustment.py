@@ -17,12 +17,14 @@ POSE = 6
 """Numbers of a frame's pose; what frames share has a column each."""
 
 LENS, SHUTTER, SHAPE, FOCUS, SHIFT = (0, 1, 2, 3, 6, 7, 8, 9, 10), (4, 5), (11, 12, 13, 14), (15,), (16, 17)
-SINGLY = 18
-"""Columns: what the camera's focal lengths and principal point lack, in focal lengths, and its distortion; seconds of
-read-out along x and y; metres by which the board is bent (three) and stretched; over time, the relative focal length,
-and the picture's shift against the lens in pixels."""
+"""Columns: what the camera lacks of both focal lengths, of the second one and of the principal point, in focal lengths,
+and of distortion; seconds of read-out along x and y; metres by which the board is bent (three) and stretched; over
+time, the relative focal length, and the picture's shift against the lens in pixels."""
 
-USUAL = np.array([0.1, 0.1, 0.1, 0.1, 0.02, 0.02, 1, 5, 0.1, 0.1, 20, *[2e-3] * 4, 0.03, 20, 20])
+SINGLY = 18
+"""Stands for shifts of single pictures, which have no numbers of the film."""
+
+USUAL = np.array([0.1, 3e-3, 0.03, 0.03, 0.02, 0.02, 0.3, 0.2, 2e-3, 2e-3, 0.1, *[2e-3] * 4, 0.03, 20, 20])
 """Usual sizes of the columns, their standard deviations before anything is seen."""
 
 JITTER = 10.0
@@ -60,6 +62,13 @@ class Corners:
     lens: Array
     bases: Sequence[Array]
 
+    def lens_of(self, state: State) -> Array:
+        """Return focal lengths, principal point and distortion."""
+        lens, own = self.lens.copy(), state.own[0]
+        lens[:9] += own[list(LENS)] * ([lens[0]] * 4 + [1] * 5)
+        lens[1] += own[0] * self.lens[0]
+        return lens
+
 
 @dataclass(frozen=True, eq=False)
 class State:
@@ -77,7 +86,8 @@ def start(pixels: Array, places: Array, size: Array, camera: PixelCamera, poses:
     gap = np.diff(time) > 3 * np.median(np.diff(time))
     lens = np.zeros(4 + max(5, len(camera.distortion)))
     lens[: 4 + len(camera.distortion)] = *camera.focal, *camera.centre, *camera.distortion
-    bases = [np.ones((len(time), 1))] * FOCUS[0] + [_hats(time, 2.0, 60)] + [_hats(time, 0.35, 100)] * 2
+    focus = np.hstack([_hats(time, 3.0, 60), _hats(time, 0.6, 100) / 4])  # fast changes are small ones
+    bases = [*[np.ones((len(time), 1))] * FOCUS[0], focus, *[_hats(time, 0.35, 100)] * 2]
     even = ~(np.append(gap, False) | np.append(False, gap))
     R = np.swapaxes(poses.rotation.as_matrix(), 1, 2)
     state = State(R, -(R @ poses.position[..., None])[..., 0], np.zeros((len(time), len(bases))), seen)
@@ -118,18 +128,27 @@ class Normal:
 class Fit:
     """Normal equations, the second ones for pictures of which each is shifted by itself, and pixels that are left.
 
-    The `excess` is what noise does not explain of these, by chance at `sure` standard deviations.  The shutter `moved`
-    the corners so far; their `speed` is in pixels a second.
+    Where frames may have a lens of their own, the mean square is 1 + `ratio` times the noise's, in `count` values.
+    The shutter `moved` the corners so far; their `speed` is in pixels a second.
     """
 
     normals: tuple[Normal, Normal]
     noise: float
     left: float
-    excess: float
-    sure: float
-    wider: float
+    ratio: float
+    count: int
     moved: Array
     speed: Array
+
+    @property
+    def excess(self) -> float:
+        """Pixels that noise does not explain."""
+        return self.noise * math.sqrt(max(self.ratio, 0.0))
+
+    @property
+    def sure(self) -> float:
+        """Standard deviations of chance by which they are there."""
+        return self.ratio * math.sqrt(self.count / 2)
 
     def normal(self, columns: Sequence[int]) -> Normal:
         """Normal equations for some columns."""
@@ -179,10 +198,8 @@ def _step(corners: Corners, state: State, columns: Sequence[int]) -> tuple[State
     used = corners.seen & (size <= FAR * np.fmax(np.nanmedian(size), np.nanmedian(size, axis=1))[:, None])
     count = (ALONE - POSE - 2 * (SINGLY in columns)) * int(even.sum()) - len(values)
     ratio = float(((y - A @ step)[:, : ALONE - POSE] ** 2 * weight).sum()) / count - 1
-    rms, excess = float(np.sqrt(np.mean(left[used] ** 2))), math.sqrt(max(ratio, 0) * noise)
-    fit = Fit(
-        normals, math.sqrt(noise), rms, excess, ratio * math.sqrt(count / 2), math.sqrt(1 + max(ratio, 0)), moved, speed
-    )
+    rms = float(np.sqrt(np.mean(left[used] ** 2)))
+    fit = Fit(normals, math.sqrt(noise), rms, ratio, count, moved, speed)
     after = State(turn @ state.R, (turn @ state.p[..., None] + pose[:, 3:])[..., 0], own, used)
     return after, fit, float(np.abs(change[used]).max())
 
@@ -193,16 +210,16 @@ def _rows(corners: Corners, state: State) -> tuple[Array, Array, Array]:
     import cv2
     from scipy.interpolate import CubicSpline
 
-    (K, n), own, lens = corners.seen.shape, state.own, corners.lens.copy()
-    lens[:9] += own[0, LENS] * ([lens[0]] * 4 + [1] * 5)
+    (K, n), own, lens = corners.seen.shape, state.own, corners.lens_of(state)
     x, y, _ = (corners.places - corners.places.mean(axis=0)).T / np.ptp(corners.places, axis=0).max() * 2
     axes = state.R[:, None, :, [2, 2, 2, 0]] * np.stack([x * x, x * y, y * y, x], axis=1)[:, None]
     X = np.swapaxes(state.R @ corners.places.T, 1, 2) + state.p[:, None] + axes @ own[0, SHAPE]
     matrix = np.array([[lens[0], 0, lens[2]], [0, lens[1], lens[3]], [0, 0, 1]])
     seen, slopes = cv2.projectPoints(X.reshape(-1, 3), np.zeros(3), np.zeros(3), matrix, lens[4:])
     zoom = 1 + own[:, None, FOCUS]
-    slopes, about = slopes.reshape(K, n, 2, -1) * zoom[..., None], seen.reshape(K, n, 2) - lens[2:4]
-    pixels = lens[2:4] + zoom * about + own[:, None, SHIFT]
+    slopes, about = slopes.reshape(K, n, 2, -1) * zoom[..., None], seen.reshape(K, n, 2) - corners.lens[2:4]
+    pixels = corners.lens[2:4] + zoom * about + own[:, None, SHIFT]
+    slopes[..., POSE] += slopes[..., POSE + 1]
     spline = CubicSpline(corners.time, pixels)
     speed, growth = spline(corners.time, 1), spline(corners.time, 2)
     share = corners.pixels / corners.size - 0.5
