@@ -35,9 +35,6 @@ TRIANGULATION = "triangulation"
 CUT_OFF = 0.95
 """Share of a film's pictures below which it is said that some are missing."""
 
-ALIKE = 1.0
-"""Seconds in which the errors of corners stay alike, for they come of blur, compression and the lens."""
-
 BOARD = "board"
 """Name of the distance of a corner of the board."""
 
@@ -119,23 +116,10 @@ class Film(Footage):
 
     @cached_property
     def observer(self) -> Observer:
-        """Extended Kalman filter of depth with the noise of this film's corners and poses."""
+        """Extended Kalman filter of depth with the noise of this film."""
         form = PerspectiveSystem(self.motion, self.recordings[0].imaging_surface).measure("y1", "y2")
-        return ekf(form, **self._noise)
-
-    @cached_property
-    def _noise(self) -> dict[str, float]:
-        """Gains of the filter.
-
-        Velocities of poses integrate to the poses again, so that errors of these count like errors of the image.  All
-        change slowly, so that the samples of `ALIKE` count as one.
-        """
         variance = float(np.median([each.noise_variance for each in self if each.noise_variance is not None]))
-        if self.seen is not None:
-            spread = np.median(np.diagonal(self.seen.covariance, axis1=1, axis2=2), axis=0)
-            variance += spread[:3].mean() + spread[3:].mean() / self.depth**2
-        variance *= max(1.0, ALIKE / float(np.median(np.diff(self.path.time))))
-        return {"noise_variance": variance, "hidden_variance": (1 / self.depth) ** 2}
+        return ekf(form, noise_variance=variance, hidden_variance=(1 / self.depth) ** 2)
 
     @cached_property
     def depth(self) -> float:

@@ -34,6 +34,12 @@ GAP = 0.3
 JUMP, FASTEST = 20.0, 5.0
 """Median steps, and metres a second, beyond which the camera cannot have moved: the film was cut there."""
 
+ALIKE = 1.0
+"""Seconds in which errors of corners and poses stay alike, for they come of blur, compression and the lens.
+
+So the samples in it count as one: the variance that a recording has is that of white noise as bad as these errors.
+"""
+
 LARGEST_SPREAD = 2.0
 """Pixels by which samples of a point at rest scatter at most."""
 
@@ -242,7 +248,7 @@ def _recordings(
             surface,
             path.motion,
             truth=None if known is None else surface.project(local[BOARD])[first:],
-            noise_variance=place.spread**2,
+            noise_variance=place.spread**2 * max(1.0, ALIKE / float(np.median(np.diff(time[part])))),
             distances={**distances, BOARD: distances.get(BOARD, np.full(len(part) - first, np.nan))},
             source=name if len(parts) == 1 else f"{name}, from {time[part[0]]:.1f} s",
         )
