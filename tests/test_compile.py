@@ -109,6 +109,7 @@ def test_a_product_and_a_sum_rounded_once_move_no_reset():
     assert counted > 1000
 
 
+@pytest.mark.slow
 def test_only_flows_that_do_not_jump_are_rounded_less_often(monkeypatch):
     asked = []
     monkeypatch.setattr(kernels, "machine_code", lambda text, signature, rounding: asked.append(rounding))

@@ -117,7 +117,7 @@ def complaints_of(page):
 @pytest.mark.slow
 @pytest.mark.browser
 def test_every_page_opens_without_an_error_or_a_request(pages, browser):
-    axe = (FRONT / "node_modules/axe-core/axe.min.js").read_text()
+    axe = (FRONT / "node_modules/axe-core/axe.min.js").read_text("utf-8")
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
     complaints, labs, looked_at = complaints_of(page), 0, to_look_at(pages)
     for path in written(pages):
@@ -206,7 +206,7 @@ def test_lighthouse_finds_every_page_open_to_all(pages, chromium, node):
         missing("lighthouse", f"Lighthouse is missing; get it with: npm install --no-save lighthouse@12, in {FRONT}")
     names = [path.relative_to(pages).as_posix() for path in to_look_at(pages)]
     command = [node, Path(__file__).with_name("lighthouse.mjs"), modules, chromium, pages, *names]
-    lines = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
+    lines = subprocess.run(command, check=True, capture_output=True, encoding="utf-8").stdout.splitlines()
     found = [json.loads(line) for line in lines]
     least = min(found, key=lambda page: page["mark"])
     print(f"{len(found)} pages; the least mark is {least}")
@@ -299,7 +299,7 @@ def test_what_may_be_wider_than_the_page_is_scrolled_by_keys(wide):
 
 
 def test_a_formula_is_written_for_the_browser():
-    pytest.importorskip("latex2mathml", reason="get it with: python -m pip install 'percept-obs[site]'")
+    pytest.importorskip("latex2mathml", reason='get it with: python -m pip install "percept-obs[site]"')
     assert mathml(r"$\displaystyle \frac{1}{y_3}$", "block").startswith("<math")
 
 
@@ -308,7 +308,7 @@ def test_what_is_missing_is_named_with_the_command_that_gets_it(monkeypatch, cap
         "percept_obs.validation.environment.find_spec", lambda module: None if module == "furo" else object()
     )
     assert cli.main(["site", str(tmp_path / "new")]) == 1
-    assert "furo is missing; get it with: python -m pip install 'percept-obs[site]'" in capsys.readouterr().err
+    assert 'furo is missing; get it with: python -m pip install "percept-obs[site]"' in capsys.readouterr().err
     monkeypatch.setattr("percept_obs.validation.environment.find_spec", lambda module: "lite" not in module or None)
     assert cli.main(["site", str(tmp_path / "new"), "--python"]) == 1
     assert "jupyterlite_core, jupyterlite_pyodide_kernel is missing; get it with" in capsys.readouterr().err

@@ -1,10 +1,11 @@
 """Python as in a browser: no threads, processes or sockets, and of all packages only those that percept_obs requires.
 
-    python without_threads.py FOLDER              builds labs and saves them, follows observers, draws, compares, judges
-    python without_threads.py modules             imports every module of percept_obs
-    python without_threads.py NOTEBOOK.ipynb      runs all its cells
+    python without_threads.py FOLDER [EXTRA]      builds labs and saves them, follows observers, draws, judges
+    python without_threads.py modules data        imports every module of percept_obs
+    python without_threads.py NOTEBOOK.ipynb data runs all its cells
 
-Any warning is an error.
+Any warning is an error.  With the extra "data" the first also compares and runs an ensemble, and says without it how to
+get it.
 """
 
 import _thread
@@ -28,17 +29,16 @@ from packaging.utils import canonicalize_name
 IN_LITE = ["filterpy", "xarray"]
 """Packages that the notebooks of the JupyterLite get besides."""
 
-PLATFORM = {"sys_platform": "emscripten", "platform_system": "Emscripten", "extra": ""}
 
-
-def required(name="percept-obs"):
+def required(name="percept-obs", extra=""):
     """Names of the packages that one requires in a browser, and of those that they require."""
     found = {}
+    platform = {"sys_platform": "emscripten", "platform_system": "Emscripten", "extra": extra}
 
     def add(name):
         for text in importlib.metadata.requires(name) or ():
             wanted = Requirement(text)
-            if (wanted.marker is None or wanted.marker.evaluate(PLATFORM)) and wanted.name not in found:
+            if (wanted.marker is None or wanted.marker.evaluate(platform)) and wanted.name not in found:
                 found[wanted.name] = wanted.specifier
                 add(wanted.name)
 
@@ -63,9 +63,9 @@ def refuse(*args, **kwargs):
     raise RuntimeError("can't start what a browser does not have")
 
 
-def as_in_a_browser(more=()):
+def as_in_a_browser(extra="", more=()):
     """Take away what a browser's Python does not have; `more` are packages that are there all the same."""
-    there = {canonicalize_name(name) for name in [*required(), "percept-obs", *more]}
+    there = {canonicalize_name(name) for name in [*required(extra=extra), "percept-obs", *more]}
     packages = importlib.metadata.packages_distributions().items()
     absent = {module for module, names in packages if not {canonicalize_name(name) for name in names} & there}
     sys.meta_path[:] = [Among(finder, absent) for finder in sys.meta_path]
@@ -80,7 +80,6 @@ def work(folder):
     import percept_obs as po
     from percept_obs import figures, labs, papers
     from percept_obs.recording import scenarios
-    from percept_obs.studies.comparison import compare
 
     sys.platform = "emscripten"  # what asks, asks now; the packages below were made for this machine
     assert "numba" not in sys.modules
@@ -90,7 +89,6 @@ def work(folder):
     run = po.track(recording, po.ibo(form))
     assert str(run.verdict()).startswith("converged")
     figures.runs_over_time(run).figure.savefig(folder / "run.svg")
-    assert len(compare([recording], [po.ibo(form), po.ekf(form)])) == 2
     assert papers.judge([papers.DE_LUCA2008])
     assert po.check("a13 - a33 y1", "a13 - y1 a33")
     for make in (labs.observer_lab, labs.points_lab, labs.structure_lab):
@@ -98,7 +96,20 @@ def work(folder):
         assert lab.analyse()["sentences"]
         lab.save(folder / f"{lab.kind}.html")
     assert labs.derivation_desk(student="Ada").analysis["steps"]
-    assert po.ensemble(scenario, po.ibo(form), seeds=3, duration=1.0, chunk=1).sizes["seed"] == 3
+    return scenario, recording, form
+
+
+def work_on_data(scenario, recording, form):
+    """Make tables and an ensemble; return what is said if that cannot be done."""
+    import percept_obs as po
+    from percept_obs.studies.comparison import compare
+
+    try:
+        assert len(compare([recording], [po.ibo(form), po.ekf(form)])) == 2
+        assert po.ensemble(scenario, po.ibo(form), seeds=3, duration=1.0, chunk=1).sizes["seed"] == 3
+    except ModuleNotFoundError as error:
+        return str(error)
+    return ""
 
 
 def import_all():
@@ -129,11 +140,12 @@ def run(notebook):
 
 if __name__ == "__main__":
     matplotlib.use("Agg")
-    as_in_a_browser(more=IN_LITE)
-    what = Path(sys.argv[1])
+    what, extra = Path(sys.argv[1]), "".join(sys.argv[2:])
+    as_in_a_browser(extra, more=IN_LITE if extra else [])
     if what.suffix == ".ipynb":
         run(what)
     elif what.name == "modules":
         import_all()
     else:
-        work(what)
+        missing = work_on_data(*work(what))
+        assert missing == ("" if extra else 'pandas is missing; get it with: python -m pip install "percept-obs[data]"')

@@ -17,6 +17,9 @@ from percept_obs.validation import checked, needed, write_whole
 DICTIONARY = "DICT_4X4_50"
 """OpenCV's markers of 4 x 4 cells, the largest cells that there are."""
 
+WINDOW = 0.7
+"""Half of the window in which a corner is looked for, over the white between a square's edge and its marker."""
+
 
 @checked
 @dataclass(frozen=True)
@@ -108,6 +111,12 @@ class Board:
         return np.stack([self.square * x.ravel(), self.square * y.ravel(), np.zeros(x.size)], axis=1)
 
     @cached_property
+    def neighbours(self) -> Indices:
+        """Numbers of inner corners with an edge of a square between them, shape (m, 2)."""
+        apart = np.linalg.norm(self.points[:, None] - self.points, axis=-1)
+        return np.argwhere(np.triu(np.abs(apart - self.square) < 0.1 * self.square))
+
+    @cached_property
     def charuco(self) -> Any:
         """The board as OpenCV's `CharucoBoard`."""
         needed("film", "cv2")
@@ -131,8 +140,17 @@ class Board:
 
         The last value is True if a marker is seen twice, so that there are two boards.
         """
+        import cv2
+
         corners, numbers, _, markers = self._detector.detectBoard(picture)
         twice = markers is not None and len(np.unique(markers)) < len(markers)
         if numbers is None:
             return np.empty(0, dtype=int), np.empty((0, 2)), twice
-        return np.ravel(numbers).astype(int), np.reshape(corners, (-1, 2)).astype(np.float64), twice
+        found = np.full((len(self.points), 2), np.nan)
+        found[np.ravel(numbers)] = np.reshape(corners, (-1, 2))
+        edges = np.linalg.norm(np.diff(found[self.neighbours], axis=1)[:, 0], axis=1)
+        free = WINDOW * (self.square - self.marker) / 2 / self.square
+        half = max(2, int(free * np.nanmedian(edges))) if np.isfinite(edges).any() else 2
+        until = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 50, 1e-3)
+        finer = cv2.cornerSubPix(picture, corners, (half, half), (-1, -1), until)
+        return np.ravel(numbers).astype(int), np.reshape(finer, (-1, 2)).astype(np.float64), twice

@@ -24,7 +24,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
-from percept_obs.validation import bar
+from percept_obs.validation import bar, load_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -107,7 +107,7 @@ class Film(Footage):
         if self.seen is not None:
             first += f", with corners to {self.seen.error:.2g} pixels"
         if self.focal_deviation:
-            first += f" and the focal length to {100 * self.focal_deviation:.1g} %"
+            first += f" and the focal length to {100 * self.focal_deviation:.2g} %"
         said = [f"{first}; {corners} tracks of the board's corners, {len(self) - corners} of other points."]
         said += [f"{each.sentence[0].upper()}{each.sentence[1:]}: {each.evidence}." for each in self.findings]
         if len(time) < CUT_OFF * self.video.count:
@@ -154,8 +154,7 @@ class Film(Footage):
         Its columns are point, seconds (that it was seen), distance and claimed (two standard deviations) in metres,
         reference ("board" or "triangulation") and its distance, error (relative), and trusted with the reason.
         """
-        import pandas as pd
-
+        pd = load_pandas()
         rows = []
         for run in bar(self.runs, "judging"):
             recording, trust = run.recording, run.trust()

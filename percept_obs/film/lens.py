@@ -14,9 +14,6 @@ from percept_obs.recording.poses import Poses
 FEWEST = 8
 """Corners of the board that a picture shows at least, for a pose."""
 
-FEWEST_PICTURES = 10
-"""Pictures with a pose that a film needs."""
-
 ALIKE = 1.5
 """Ratio of two poses' errors up to which either may be true."""
 

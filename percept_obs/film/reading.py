@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.film.board import Board
+from percept_obs.film.faults import FEWEST, FEWEST_CORNERS, Faults, find_faults
 from percept_obs.film.film import BOARD, TRIANGULATION, Film
-from percept_obs.film.lens import FEWEST, FEWEST_PICTURES, Seen, find_lens, find_poses
+from percept_obs.film.lens import find_lens, find_poses
 from percept_obs.film.pictures import undistorted
 from percept_obs.film.sighting import SHORTEST_TRACK, Sighting, sight
 from percept_obs.film.triangulation import triangulate
@@ -23,7 +25,7 @@ from percept_obs.recording.track_table import runs
 from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked
 
-SHORTEST_FILM = 2.0
+SHORTEST_FILM = 1.5
 """Seconds that a film lasts at least."""
 
 GAP = 0.3
@@ -34,6 +36,9 @@ JUMP, FASTEST = 20.0, 5.0
 
 LARGEST_SPREAD = 2.0
 """Pixels by which samples of a point at rest scatter at most."""
+
+SPOILS = ("unknown", "focus", "stabilisation", "board", "lens", "noise")
+"""Keys of the mistakes that are not corrected, and with which no estimate is trusted."""
 
 SURE = 0.1
 """Largest relative standard deviation of a triangulated distance."""
@@ -98,32 +103,38 @@ def read_film(
         raise ValueError("poses are given and no camera; give also camera=PixelCamera(...), in pixels of the film")
     printed = board if isinstance(board, Board) else Board() if board is None else Board.from_json(board)
     sighting = sight(video, printed)
-    seen, findings, unsure = None, (), 0.0
+    seen, faults, unsure = None, None, 0.0
     if poses is None:
         _refuse_unseen(sighting, printed, video)
+        places = printed.points
+        given = camera or find_lens(sighting.corners, places, video.size).camera
+        seen = find_poses(sighting.time, sighting.corners, places, given)
+        faults = find_faults(sighting.time, sighting.corners, printed, video.size, given, seen.poses, sighting.width)
+        sighting = replace(sighting, corners=faults.corners, tracked=_at_the_middle(sighting, faults.readout, video))
         if camera is None:
-            lens = find_lens(sighting.corners, printed.points, video.size)
+            lens = find_lens(sighting.corners, places, video.size)
             camera, unsure = lens.camera, lens.deviation
-        seen = find_poses(sighting.time, sighting.corners, printed.points, camera)
+        seen = find_poses(sighting.time, sighting.corners, places, camera)
         poses = seen.poses
     assert camera is not None
     travelled = _path(poses, derivative)
-    recordings = (*_corners(sighting, printed, camera, seen, travelled), *_others(sighting, camera, travelled))
-    if not recordings:
+    doubt = _doubt(faults)
+    found = [*_corners(sighting, printed, camera, travelled)] if seen else []
+    found += _others(sighting, camera, travelled)
+    if not found:
         raise ValueError(
             f"'{video.path}' shows no point for {SHORTEST_TRACK:g} s while the camera's pose is known; move slowly, "
             "with the board in the picture"
         )
-    frames = undistorted(sighting, camera)
     return Film(
-        recordings,
+        tuple(replace(recording, doubt=doubt) for recording in found),
         (BOARD, TRIANGULATION),
-        frames,
+        undistorted(sighting, camera),
         video.path.name,
         video,
         camera,
         travelled,
-        findings,
+        faults.findings if faults else (),
         sighting,
         unsure,
         printed,
@@ -131,20 +142,36 @@ def read_film(
     )
 
 
+def _doubt(faults: Faults | None) -> str:
+    """Return why estimates are not to be trusted, if a fault is not corrected."""
+    spoiled = [each.sentence for each in faults.findings if each.key in SPOILS] if faults else []
+    return ", and ".join(spoiled)
+
+
+def _at_the_middle(sighting: Sighting, readout: Array, video: Video) -> Array:
+    """Return the pixels of tracks at the times of their pictures, from those when their row or column was read."""
+    moved = [np.empty((0, 2))]
+    for first, pixels in sighting.tracks:
+        speed = np.gradient(pixels, sighting.time[first : first + len(pixels)], axis=0)
+        late = (pixels / video.size - 0.5) @ readout
+        moved.append(pixels - speed * late[:, None])
+    return np.concatenate(moved)
+
+
 def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
     """Refuse a film in which too few pictures show enough of the board."""
     count = np.isfinite(sighting.corners).all(axis=2).sum(axis=1)
-    enough = int((count >= FEWEST).sum())
+    enough = int((count >= FEWEST_CORNERS).sum())
     if sighting.twice.mean() > 0.1:
         raise ValueError(f"'{video.path}' shows two boards with the same markers; leave one in the picture")
-    if np.ptp(sighting.time) < SHORTEST_FILM:
+    if np.ptp(sighting.time) < SHORTEST_FILM or len(count) < FEWEST:
         raise ValueError(
             f"'{video.path}' is too short: {len(count)} pictures in {np.ptp(sighting.time):.1f} s; film for 10 to 20 s"
         )
-    if enough < FEWEST_PICTURES:
+    if enough < FEWEST:
         raise ValueError(
-            f"{enough} of {len(count)} pictures of '{video.path}' show {FEWEST} corners of the board, {board.name}, "
-            f"and {FEWEST_PICTURES} are needed. Is it this board (board=...)? It must lie flat, be sharp, and "
+            f"{enough} of {len(count)} pictures of '{video.path}' show {FEWEST_CORNERS} corners of the board, "
+            f"{board.name}, and {FEWEST} are needed. Is it this board (board=...)? It must lie flat, be sharp, and "
             "fill a third of the picture's width. Without a board, give poses=... and camera=..., as of read_colmap"
         )
 
@@ -168,12 +195,8 @@ def _path(poses: Poses, derivative: Derivative) -> CameraPath:
     )
 
 
-def _corners(
-    sighting: Sighting, board: Board, camera: PixelCamera, seen: Seen | None, path: CameraPath
-) -> Iterator[Recording]:
+def _corners(sighting: Sighting, board: Board, camera: PixelCamera, path: CameraPath) -> Iterator[Recording]:
     """Yield recordings of the board's corners, with their truth."""
-    if seen is None:
-        return
     for number, place in enumerate(board.points):
         rows = np.flatnonzero(np.isfinite(sighting.corners[:, number]).all(axis=1))
         yield from _recordings(
