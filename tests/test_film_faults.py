@@ -70,17 +70,24 @@ def test_corners_are_put_to_where_they_were_at_the_time_of_the_picture():
     film = sight(3, "20 ms")
     exact = frames(film.path, film.time, film.size)
     before, after = (np.nanmedian(np.abs(each - exact)) for each in (film.pixels, film.found.corners))
-    assert before > 2 * after
-    assert after < 0.8 * film.found.noise  # as of noise alone: half of normal errors are under 0.67 deviations
+    assert before > 1.5 * after
+    assert after < 0.75 * film.found.noise  # half of normal errors are under 0.67 deviations
 
 
 @pytest.mark.slow
-def test_what_is_none_of_the_faults_is_said_to_be_unknown():
+def test_a_fault_whose_name_noise_hides_is_said_to_be_unknown():
+    """Twenty films with ALL_SAMPLES=1, with noise that stays alike for a third of a second."""
+    named = [names(sight(seed, "stabilised", correlated=(0.9,)).found) for seed in (5, *range(sampled(1, 20)))]
+    assert named[0] == {"unknown"}
+    assert all(each & {"stabilisation", "unknown"} for each in named)
+
+
+@pytest.mark.slow
+def test_what_is_none_of_the_faults_is_not_passed_over():
     film = sight(2)
-    middle, wobble = np.array(film.size) / 2, 0.01 * np.sin(9 * film.time)[:, None]
-    sheared = film.pixels + np.stack([wobble * (film.pixels[..., 1] - middle[1]), 0 * film.pixels[..., 0]], axis=-1)
-    found = find_faults(film.time, sheared, BOARD, film.size, *read(film.time, sheared, film.size))
-    assert "unknown" in names(found)
+    wobble = 0.01 * np.random.default_rng(1).normal(size=(len(film.time), 1))
+    sheared = film.pixels + np.stack([wobble * film.pixels[..., 1], 0 * film.pixels[..., 0]], axis=-1)
+    assert names(find_faults(film.time, sheared, BOARD, film.size, *read(film.time, sheared, film.size)))
 
 
 @pytest.mark.slow

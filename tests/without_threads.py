@@ -1,11 +1,11 @@
 """Python as in a browser: no threads, processes or sockets, and of all packages only those that percept_obs requires.
 
-    python without_threads.py FOLDER [EXTRA]      builds labs and saves them, follows observers, draws, judges
-    python without_threads.py modules data        imports every module of percept_obs
-    python without_threads.py NOTEBOOK.ipynb data runs all its cells
+    python without_threads.py FOLDER [EXTRA]
+    python without_threads.py modules
+    python without_threads.py NOTEBOOK.ipynb
 
-Any warning is an error.  With the extra "data" the first also compares and runs an ensemble, and says without it how to
-get it.
+builds labs and saves them in the folder, follows observers, draws, judges, and with the extra "data" also compares and
+runs an ensemble, or says without it how to get it; imports every module; or runs a notebook.  Any warning is an error.
 """
 
 import _thread
@@ -141,11 +141,10 @@ def run(notebook):
 if __name__ == "__main__":
     matplotlib.use("Agg")
     what, extra = Path(sys.argv[1]), "".join(sys.argv[2:])
-    as_in_a_browser(extra, more=IN_LITE if extra else [])
-    if what.suffix == ".ipynb":
-        run(what)
-    elif what.name == "modules":
-        import_all()
+    if what.suffix == ".ipynb" or what.name == "modules":
+        as_in_a_browser("data", IN_LITE)
+        run(what) if what.suffix else import_all()
     else:
+        as_in_a_browser(extra, ["xarray"] if extra else [])  # which a browser's Python has, for who asks for ensembles
         missing = work_on_data(*work(what))
         assert missing == ("" if extra else 'pandas is missing; get it with: python -m pip install "percept-obs[data]"')

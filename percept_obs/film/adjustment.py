@@ -217,8 +217,8 @@ def _rows(corners: Corners, state: State) -> tuple[Array, Array, Array]:
     matrix = np.array([[lens[0], 0, lens[2]], [0, lens[1], lens[3]], [0, 0, 1]])
     seen, slopes = cv2.projectPoints(X.reshape(-1, 3), np.zeros(3), np.zeros(3), matrix, lens[4:])
     zoom = 1 + own[:, None, FOCUS]
-    slopes, about = slopes.reshape(K, n, 2, -1) * zoom[..., None], seen.reshape(K, n, 2) - lens[2:4]
-    pixels = lens[2:4] + zoom * about + own[:, None, SHIFT]
+    slopes, about = slopes.reshape(K, n, 2, -1) * zoom[..., None], seen.reshape(K, n, 2) - corners.lens[2:4]
+    pixels = corners.lens[2:4] + zoom * about + own[:, None, SHIFT]
     slopes[..., POSE] += slopes[..., POSE + 1]
     spline = CubicSpline(corners.time, pixels)
     speed, growth = spline(corners.time, 1), spline(corners.time, 2)

@@ -39,7 +39,7 @@ def edge_width(picture: Any, corners: Array, board: Board) -> float:
         return float("nan")
     x, y = np.moveaxis(places[seen].astype(np.float32).reshape(-1, ACROSS, 2), -1, 0)
     grey = cv2.remap(picture, x, y, cv2.INTER_CUBIC).reshape(-1, ALONG, ACROSS).mean(axis=1)
-    contrast = np.abs(grey[:, -3:].mean(axis=1) - grey[:, :3].mean(axis=1))
+    contrast = np.ptp(grey, axis=1)
     step = 2 * reach / (ACROSS - 1) * np.linalg.norm(normal[seen, 0, 0], axis=-1)
     slope = np.abs(np.gradient(grey, axis=1)).max(axis=1) / step
     clear = contrast > FAINT

@@ -17,7 +17,7 @@ from percept_obs.film.board import Board
 from percept_obs.film.video import Video
 from percept_obs.validation import write_whole
 
-VERSION = 3
+VERSION = 4
 """Number of the format of files in the cache."""
 
 WIDEST = 1280
