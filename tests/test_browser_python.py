@@ -86,7 +86,7 @@ def test_every_package_is_pyodide_s_or_stands_beside_the_notebooks_or_comes_from
 def test_modules_import_and_notebooks_run_without_threads_processes_sockets_and_numba(what, tmp_path, monkeypatch):
     if "load_utias" in json.dumps(notebooks().get(what)):
         monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(utias_folder()))
-    command = [sys.executable, HERE / "without_threads.py", what if what == "modules" else NOTEBOOKS / what, "data"]
+    command = [sys.executable, HERE / "without_threads.py", what if what == "modules" else NOTEBOOKS / what]
     before = children_computed()
     answer = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
     if what.startswith("16"):  # films, of which a note at its beginning in a browser tells
