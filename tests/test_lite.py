@@ -43,6 +43,7 @@ def test_it_holds_every_notebook_with_a_cell_that_installs(built):
         note, install = cells[1:3]
         assert lite.PLACES["servers"] in note["source"]
         assert "%pip install -q percept-obs" in install["source"]
+        assert ("reads films" in note["source"]) is name.startswith("16")
         assert [cells[0], *cells[3:]] == original["cells"]
 
 
@@ -112,11 +113,10 @@ def test_the_page_of_a_notebook_leads_to_it_and_says_where_python_comes_from(pag
 
 
 def test_what_the_notebooks_import_is_installed():
-    asked = {Requirement(name).name for name in lite.INSTALL.splitlines()[0].split()[3:]}
+    own, other = map(Requirement, lite.INSTALL.splitlines()[0].split()[3:])
+    assert (own.name, own.extras, other.name) == ("percept-obs", {"data", "filters"}, "xarray")
     text = json.dumps(notebooks())
-    for module in ("filterpy", "xarray"):
-        assert re.search(rf"(from|import) {module}\b", text)
-        assert module in asked
+    assert all(re.search(rf"(from|import) {module}\b", text) for module in ("filterpy", "pandas", "xarray"))
 
 
 @pytest.mark.slow

@@ -31,7 +31,7 @@ LEARN = {
     "own.html": "Your own recording",
 }
 TEACH = {
-    "guide.html#three-lesson-plans": "Three lesson plans: 45 and 90 minutes, and one with films",
+    "guide.html#lesson-plans": "Lesson plans: 45 and 90 minutes, eight weeks, and one with films",
     "guide.html#what-students-often-get-wrong": "What students often get wrong",
     "guide.html": "The teacher's guide",
 }

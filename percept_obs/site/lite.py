@@ -36,7 +36,11 @@ in a Python of your own.  A notebook with the UTIAS recording fetches it from gi
 its first cell says so, and the cells that need it do not run.  What you change stays in this browser: download what you
 want to keep.*"""
 
-INSTALL = """%pip install -q percept-obs filterpy xarray
+NO_FILMS = """
+
+**This notebook reads films, which a browser's Python cannot: read it here, and run it in a Python of your own.**"""
+
+INSTALL = """%pip install -q percept-obs[data,filters] xarray
 import pyodide_http
 
 pyodide_http.patch_all()  # Python may fetch what the browser may"""
@@ -45,7 +49,8 @@ pyodide_http.patch_all()  # Python may fetch what the browser may"""
 def prepared(notebook: Mapping[str, Any]) -> dict[str, Any]:
     """Return a notebook that installs what it needs, below its title."""
     title, *cells = notebook["cells"]
-    note = {"cell_type": "markdown", "id": "in-a-browser", "metadata": {}, "source": NOTE}
+    source = NOTE + NO_FILMS * ("percept_obs.film" in json.dumps(notebook))
+    note = {"cell_type": "markdown", "id": "in-a-browser", "metadata": {}, "source": source}
     install = {"cell_type": "code", "id": "install", "metadata": {}, "source": INSTALL}
     return {**notebook, "cells": [title, note, {**install, "execution_count": None, "outputs": []}, *cells]}
 
