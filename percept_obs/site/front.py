@@ -26,7 +26,7 @@ ANSWERS = ("Yes, at once", "Yes, but slowly", "No")
 """Answers of the lab's question "straight", in its order."""
 
 TEACH = {
-    "guide.html#two-lesson-plans": "Two lesson plans: 45 and 90 minutes",
+    "guide.html#lesson-plans": "Lesson plans: 45 minutes, 90 minutes, eight weeks",
     "guide.html#what-students-often-get-wrong": "What students often get wrong",
     "guide.html": "The teacher's guide",
 }
