@@ -2,7 +2,7 @@
 
 from percept_obs.exercises.answers import Attempt, choose, derive, reach
 from percept_obs.exercises.copies import COPIES, stub, students_copy
-from percept_obs.exercises.graders import GRADERS, nbgrader_copy, otter_copy
+from percept_obs.exercises.graders import GRADERS
 from percept_obs.exercises.models import model_answer
 
 __all__ = [
@@ -12,8 +12,6 @@ __all__ = [
     "choose",
     "derive",
     "model_answer",
-    "nbgrader_copy",
-    "otter_copy",
     "reach",
     "stub",
     "students_copy",

@@ -56,7 +56,7 @@ class Film(Footage):
         In pixels of the film.
     path : CameraPath
         Smoothed poses and velocities; the world is the board: x along its rows, y down, z into it, in metres.
-    findings : tuple of studies.diagnosis.Finding
+    findings : tuple of Finding
         Mistakes that the pictures show.
     focal_deviation : float
         Standard deviation of the focal length, relative; the distance of the camera from the board has the same.
