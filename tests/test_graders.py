@@ -18,7 +18,7 @@ from sample_sizes import sampled
 from test_notebooks import code, read
 
 from percept_obs import cli
-from percept_obs.exercises import nbgrader_copy, otter_copy
+from percept_obs.exercises import GRADERS
 from percept_obs.exercises.models import answers_in
 
 NAMES = sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb"))
@@ -97,7 +97,7 @@ def test_each_exercise_is_a_question_of_otter(copies, name):
         assert [kind for kind in question["kinds"] if kind[0] != "QUESTION"] == ends
 
 
-@pytest.mark.parametrize("copy", [nbgrader_copy, otter_copy])
+@pytest.mark.parametrize("copy", GRADERS.values(), ids=GRADERS)
 def test_no_solution_stands_outside_of_what_is_cut(name, copy):
     notebook = read(f"{name}.ipynb")
     made = copy(notebook)
@@ -115,7 +115,7 @@ def test_the_name_of_a_reply_is_free(name):
 
 def test_a_check_without_a_reply_is_refused():
     cell = {"cell_type": "code", "id": "it", "metadata": {"tags": ["exercise"]}, "source": "reply = 3"}
-    for copy in (nbgrader_copy, otter_copy):
+    for copy in GRADERS.values():
         with pytest.raises(ValueError, match="a check ends with its reply"):
             copy({"cells": [cell]})
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from urllib.parse import unquote, urldefrag
 
 import matplotlib.figure
+import nbformat
 import pytest
 from conftest import missing
 from front_ends import SETTLED, TRIALS, Shown
@@ -29,6 +30,7 @@ from percept_obs.site.front_ends import TRIED
 from percept_obs.site.named import named
 from percept_obs.site.notebooks import drawing, needing_the_recording, run_all
 from percept_obs.site.pages import ledger_addresses, reference
+from percept_obs.site.slides import NEXT, slides_of
 
 NOTEBOOK = "00_start.ipynb"
 PAPER = "DE_LUCA2008"
@@ -176,6 +178,53 @@ def test_the_first_lab_draws_within_a_second_and_a_half_of_computing(pages, brow
     metrics = {metric["name"]: metric["value"] for metric in session.send("Performance.getMetrics")["metrics"]}
     print(f"first lab: {metrics['ProcessTime']:.2f} s of computing, {page.evaluate('performance.now()') / 1000:.2f} s")
     assert metrics["ProcessTime"] < 1.5
+    page.close()
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+def test_a_lab_on_a_slide_is_alive_and_its_keys_turn_no_slide(pages, browser):
+    page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
+    complaints = complaints_of(page)
+    page.goto((pages / "slides" / NOTEBOOK).with_suffix(".html").as_uri())
+    page.wait_for_function(DRAWN)
+    for _ in range(2):  # the title, the goals, the lab
+        page.keyboard.press("Space")
+    lab = page.locator("section.present .percept-lab").first
+    lab.locator(".first-screen .views canvas").first.wait_for()
+    assert lab.locator(".first-screen .views canvas").first.bounding_box()["height"] > 200
+    gain = lab.locator(".first-screen input[type=range]").first
+    before = gain.input_value()
+    gain.press("ArrowRight")
+    assert gain.input_value() != before
+    assert lab.is_visible()
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("Space")
+    page.get_by_text("Exercise 1: derive.").wait_for()
+    assert complaints == []
+    page.close()
+
+
+def test_slides_are_the_cells_with_their_tag_and_the_exercises():
+    notebook = nbformat.reads((NOTEBOOKS / NOTEBOOK).read_text("utf-8"), as_version=4)
+    made = slides_of(notebook)
+    chosen = [cell for cell in made.cells if cell.source != NEXT]
+    assert [cell.id for cell in chosen][:3] == ["title", "goals", "lab"]
+    assert {tag for cell in chosen for tag in cell.metadata["tags"]} == {"slide", "exercise", "remove-input"}
+    assert not any("solution" in cell.metadata["tags"] for cell in chosen)
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+def test_a_printed_page_is_cut_nowhere_and_shows_no_menu(pages, browser):
+    page = browser.new_page(offline=True, viewport={"width": 720, "height": 1000})  # A4 within its margins
+    page.goto((pages / "notebooks" / NOTEBOOK).with_suffix(".html").as_uri())
+    page.wait_for_function(DRAWN)
+    page.emulate_media(media="print")
+    assert not page.locator(".skip-to-content, .sidebar-drawer, .toc-drawer").filter(visible=True).count()
+    cut = "[...document.querySelectorAll('pre, div.math')].filter((it) => it.scrollWidth > it.clientWidth + 1).length"
+    assert page.locator("pre").count() > 3
+    assert page.evaluate(cut) == 0
     page.close()
 
 

@@ -3,7 +3,7 @@
 from percept_obs.exercises.answers import Attempt, choose, derive, reach
 from percept_obs.exercises.attempts import tally
 from percept_obs.exercises.copies import COPIES, stub, students_copy
-from percept_obs.exercises.graders import GRADERS, nbgrader_copy, otter_copy
+from percept_obs.exercises.graders import GRADERS
 from percept_obs.exercises.individual import individual
 from percept_obs.exercises.models import model_answer
 
@@ -15,8 +15,6 @@ __all__ = [
     "derive",
     "individual",
     "model_answer",
-    "nbgrader_copy",
-    "otter_copy",
     "reach",
     "stub",
     "students_copy",

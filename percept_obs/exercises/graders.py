@@ -31,64 +31,19 @@ PARTS = {
 """Parts of an exercise, by the kinds and tags of their cells."""
 
 
-def nbgrader_copy(notebook: Notebook) -> dict[str, Any]:
-    """Return a notebook as the source of an assignment of nbgrader, a point for each exercise.
-
-    Parameters
-    ----------
-    notebook : mapping
-        As its file has it; it is not changed.
-
-    Raises
-    ------
-    ValueError
-        If a solution does not end by giving the answer a name, or a check does not end with its reply.
-
-    See Also
-    --------
-    otter_copy : Makes an assignment of Otter.
-    students_copy : Makes a copy that no tool marks.
-
-    Examples
-    --------
-    >>> cell = {"id": "gain", "cell_type": "code", "metadata": {"tags": ["solution"]}, "source": ["gain = 5"]}
-    >>> (made,) = nbgrader_copy({"cells": [cell]})["cells"]
-    >>> made["metadata"]["nbgrader"]["grade_id"], made["source"][0].strip()
-    ('gain', 'gain = ...  # your answer')
-    """
+def _nbgrader(notebook: Notebook) -> dict[str, Any]:
+    """Return a notebook as the source of an assignment of nbgrader, a point for each exercise."""
     return {**notebook, "cells": [made for cell in notebook["cells"] for made in _for_nbgrader(cell)]}
 
 
-def otter_copy(notebook: Notebook) -> dict[str, Any]:
-    """Return a notebook as the source of an assignment of Otter, a question of one point for each exercise.
-
-    Parameters
-    ----------
-    notebook : mapping
-        As its file has it; it is not changed.
-
-    Raises
-    ------
-    ValueError
-        If a solution does not end by giving the answer a name, or a check does not end with its reply.
-
-    See Also
-    --------
-    nbgrader_copy : Makes an assignment of nbgrader.
-    students_copy : Makes a copy that no tool marks.
-
-    Examples
-    --------
-    >>> cell = {"id": "gain", "cell_type": "code", "metadata": {"tags": ["solution"]}, "source": ["gain = 5"]}
-    >>> [made["source"][0].strip() for made in otter_copy({"cells": [cell]})["cells"]]
-    ['# ASSIGNMENT CONFIG', '# BEGIN SOLUTION', 'gain = ...  # your answer', '# END SOLUTION']
-    """
+def _otter(notebook: Notebook) -> dict[str, Any]:
+    """Return a notebook as the source of an assignment of Otter, a question of one point for each exercise."""
     cells = notebook["cells"]
     made = [each for k, cell in enumerate(cells) for each in _for_otter(cell, cells[k:])]
     return {**notebook, "cells": [_raw("otter-config", CONFIG), *made]}
 
 
-GRADERS: Mapping[str, Callable[[Notebook], dict[str, Any]]] = {"nbgrader": nbgrader_copy, "otter": otter_copy}
+GRADERS: Mapping[str, Callable[[Notebook], dict[str, Any]]] = {"nbgrader": _nbgrader, "otter": _otter}
 """Functions that make an assignment of a notebook, by the tool that marks it."""
 
 

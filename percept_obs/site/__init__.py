@@ -124,6 +124,7 @@ def build(
         slides.prepare(shown, (TEXTS / "slides.css").read_text("utf-8"))
         extensions = [*SETTINGS["extensions"], "sphinx_revealjs"]
         _generate(shown, target / "slides", {**slides.SETTINGS, "extensions": extensions}, "revealjs")
+        shutil.rmtree(target / "slides" / "_static" / "revealjs" / "plugin")  # none is used
     if address:
         write_sitemap(target, address)
     if python:
