@@ -11,23 +11,23 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from percept_obs.exercises import COPIES
+from percept_obs.exercises import COPIES, GRADERS, individual
 from percept_obs.exercises.models import notebooks
 from percept_obs.validation import write_whole
 
 FIRST_NOTEBOOK = "00_start.ipynb"
 
 
-def copy_notebooks(directory: Path, readers: str = "students") -> None:
+def copy_notebooks(directory: Path, readers: str = "students", student: str = "") -> None:
     """Copy the notebooks for their readers into a directory, which may be new, and leave whatever is there as it is."""
-    shipped = notebooks()
+    shipped = {name: individual(each, student) if student else each for name, each in notebooks().items()}
     directory.mkdir(parents=True, exist_ok=True)
     for name, notebook in shipped.items():
         target = directory / name
         if target.exists():
             print(f"kept    {target}")
         else:
-            copy = json.dumps(COPIES[readers](notebook), indent=1, ensure_ascii=False)
+            copy = json.dumps({**COPIES, **GRADERS}[readers](notebook), indent=1, ensure_ascii=False)
             write_whole(target, f"{copy}\n".encode())
             print(f"copied  {target}")
 
@@ -36,11 +36,11 @@ def lab(options: argparse.Namespace) -> int:
     """Copy the notebooks and open the first one in JupyterLab."""
     directory: Path = options.directory
     _refuse_a_file(directory)
-    copy_notebooks(directory, options.readers)
+    copy_notebooks(directory, options.readers, options.student)
     if options.copy_only:
         return 0
     if util.find_spec("jupyterlab") is None:
-        raise _Mistake(f"JupyterLab is missing; get it with: {sys.executable} -m pip install jupyterlab", 1)
+        raise _Mistake(f'JupyterLab is missing; get it with: {sys.executable} -m pip install "percept-obs[lab]"', 1)
 
     # As an address rather than a file: so the link that JupyterLab prints leads to the notebook as well.
     address = f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}"
@@ -58,16 +58,49 @@ def lab(options: argparse.Namespace) -> int:
                 continue
 
 
+def collect(options: argparse.Namespace) -> int:
+    """Mark the notebooks of a class in one table; nothing that a student wrote is run, unless --run says so."""
+    import pandas as pd
+
+    from percept_obs.exercises.collecting import collect, filled_in
+
+    if options.output.is_dir() or not options.output.parent.is_dir():
+        raise _Mistake(f"cannot write the table to {options.output}; name a file, in a folder that is there")
+    table = collect(options.directory, options.roster, options.run_code)
+    if options.output.exists():
+        table = filled_in(table, pd.read_csv(options.output, dtype=str, keep_default_na=False, encoding="utf-8-sig"))
+    write_whole(options.output, table.to_csv(index=False).encode("utf-8-sig"))
+    states = table["handed in"].str.split(" by").str[0].value_counts()
+    print(f"{', '.join(f'{count} {state}' for state, count in states.items())}: see {options.output}")
+    return 0
+
+
+def exam(options: argparse.Namespace) -> int:
+    """Write a version of the exam with other numbers, and its solutions for teachers, which are computed anew."""
+    from percept_obs.site.exam import exam
+
+    if not options.seed.isalnum():
+        raise _Mistake(f"{options.seed!r} cannot be part of a file's name; name a version with letters and digits")
+    for name, text in zip(("questions", "solutions"), exam(options.seed), strict=True):
+        target = options.directory / f"exam_{options.seed}_{name}.md"
+        write_whole(target, text.encode())
+        print(f"wrote   {target}")
+    return 0
+
+
 def site(options: argparse.Namespace) -> int:
     """Write the course as pages that need neither Python nor a network, with live labs, equations and reference."""
-    from percept_obs.site import NEEDS, SiteFault, build
+    from percept_obs.site import NEEDS, SiteFault, build, lite
     from percept_obs.validation import needed
 
     _refuse_a_file(options.directory)
     copies = {name: COPIES[options.readers](notebook) for name, notebook in notebooks().items()}
     try:
         needed("site", *NEEDS)
-        build(options.directory, copies, exam=options.readers == "teachers", address=options.address)
+        if options.python:
+            needed("lite", *lite.NEEDS)
+        exam = options.readers == "teachers"
+        build(options.directory, copies, exam=exam, address=options.address, python=options.python)
     except (SiteFault, OSError, ModuleNotFoundError) as error:
         raise _Mistake(str(error), 1) from None
     return 0
@@ -221,15 +254,37 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add = command(lab, "open the notebooks in JupyterLab")
     copies = "where your copies live (default: ./%(default)s); nothing is overwritten"
     add("directory", nargs="?", type=Path, default=Path("percept_obs_notebooks"), metavar="DIR", help=copies)
-    add("--for", **readers)
+    tools = f"{readers['help']}; nbgrader and otter get the sources of their assignments"
+    add("--for", **readers | {"choices": (*COPIES, *GRADERS), "help": tools})
+    add(
+        "--student", default="", metavar="NAME", help="make the exercises a student's own: numbers follow from the name"
+    )
     add("--copy-only", action="store_true", help="copy the notebooks, do not open them")
     add("--no-browser", action="store_true", help="start JupyterLab without a browser")
+
+    add = command(collect, "mark a class's notebooks")
+    add("directory", type=Path, metavar="DIR", help="holds a folder a student, with the notebooks handed in")
+    add("-o", "--output", type=Path, default=Path("marks.csv"), metavar="FILE", help="the table (default: %(default)s)")
+    add("--roster", type=Path, metavar="FILE", help="CSV file with columns student and, if need be, folder and due")
+    limits = "also run the cells of answers that are no plain text or number, with limits, but as you: see the guide"
+    add("--run", dest="run_code", action="store_true", help=limits)
+
+    add = command(exam, "write a version of the exam")
+    add(
+        "seed",
+        metavar="SEED",
+        help="name or number of the version, such as 2026A; it gives the same numbers everywhere",
+    )
+    add("directory", nargs="?", type=Path, default=Path("."), metavar="DIR", help="folder of the files (default: here)")
 
     add = command(site, "write the course as pages")
     add("directory", type=Path, metavar="DIR", help="folder of the pages")
     add("--for", **readers)
     stand = "where the pages will stand, for links to themselves and a sitemap"
     add("--address", default="", metavar="URL", help=stand)
+    add(
+        "--python", action="store_true", help="add JupyterLite, in which a reader runs the notebooks without installing"
+    )
 
     add = command(check, "judge the papers' equations")
     add("places", nargs="*", metavar="PLACE", help='such as "(38)", 38 or "figure 3" (default: all)')

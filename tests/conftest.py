@@ -15,6 +15,7 @@ import platformdirs
 import pytest
 from sample_sizes import sampled
 
+gc.set_threshold(20_000)  # else what the tests' modules make is looked through again and again, a fifth of loading them
 os.environ["MPLBACKEND"] = "Agg"
 # Kernels and servers with a home of their own take loops in machine code from here too.
 os.environ.setdefault("NUMBA_CACHE_DIR", str(platformdirs.user_cache_path("percept_obs")))
@@ -54,9 +55,8 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_collection_finish():
-    """Modules, tests and expressions stay to the end, so they are not looked through for garbage again and again."""
+    """Modules, tests and expressions stay to the end, so they are not looked through for garbage."""
     gc.freeze()
-    gc.set_threshold(20_000)
 
 
 @pytest.fixture(scope="session")

@@ -373,7 +373,7 @@ def pictures(truth, seed=0):
         yield np.clip(np.rint(grey + pool[y : y + h, x : x + w]), 0, 255).astype(np.uint8)
 
 
-def write_film(path, sheets, motion, camera, duration, rate=30, faults=None, seed=0):
+def write_film(path, sheets, motion, camera, duration, rate=30, faults=None, seed=0, bits=0.36):
     """Write an MP4 file of H.264 and return the truth."""
     faults, rng = faults or Faults(), np.random.default_rng([seed, 6])
     steps = (1 + faults.uneven * rng.uniform(-1, 1, round(duration * rate))) * TICKS / rate
@@ -383,7 +383,7 @@ def write_film(path, sheets, motion, camera, duration, rate=30, faults=None, see
     with av.open(str(path), "w") as file:
         stream = file.add_stream("libx264", rate=rate, options={"preset": "superfast"})
         stream.width, stream.height = map(int, stored(camera).size)
-        stream.bit_rate = round(0.36 * stream.width * stream.height * rate)  # 10 Mbit/s at 1280 x 720, as telephones do
+        stream.bit_rate = round(bits * stream.width * stream.height * rate)  # 10 Mbit/s at 1280 x 720, as telephones do
         stream.pix_fmt, stream.codec_context.time_base = "yuv420p", Fraction(1, TICKS)
         if stored(camera) != camera:
             stream.set_display_rotation(-90)
@@ -422,3 +422,9 @@ def standard_film(
 def quick_film(seed, folder, size=(640, 360), duration=5.0, rate=20, **others):
     """Write a small film as `standard_film` does."""
     return standard_film(seed, folder, size=size, duration=duration, rate=rate, **others)
+
+
+def example_film(path):
+    """Write the film that ships with the package, `percept_obs.film.example_film`, and return the truth."""
+    camera = PixelCamera((540, 540), (319.5, 179.5), (640, 360), (0.03, -0.01, 0, 0))
+    return write_film(path, scene(4, density=1200), Motion(seed=4), camera, 6, 15, Faults(noise=1.0), 4, bits=0.2)

@@ -13,7 +13,7 @@ from percept_obs.compile.integrator import EACH
 def run_script(node, script, task):
     """Answer of a script to a task, both as JSON."""
     task = json.dumps(task, allow_nan=False)
-    answer = subprocess.run([node, script], input=task, capture_output=True, text=True, check=False)
+    answer = subprocess.run([node, script], input=task, capture_output=True, encoding="utf-8", check=False)
     assert answer.returncode == 0, answer.stderr
     return json.loads(answer.stdout)
 

@@ -317,7 +317,7 @@ def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
     if importlib.util.find_spec("jupyterlab") is None:
         from conftest import missing  # only here, for notebooks' kernels import this module, too
 
-        missing("jupyterlab", "JupyterLab is missing; get it with: python -m pip install 'percept-obs[lab]'.")
+        missing("jupyterlab", 'JupyterLab is missing; get it with: python -m pip install "percept-obs[lab]".')
     for name, text in SETTINGS.items():
         file = home / f"settings/@jupyterlab/{name}.jupyterlab-settings"
         file.parent.mkdir(parents=True)
@@ -459,7 +459,7 @@ def wait_until(holds: Callable[[], object], what: str, patience: float = 60) -> 
 def is_up(address: str, process: subprocess.Popen, log: Path) -> bool:
     """Return True if a server answers at an address."""
     if process.poll() is not None:
-        raise RuntimeError(f"it did not start:\n{log.read_text()}")
+        raise RuntimeError(f"it did not start:\n{log.read_text('utf-8')}")
     try:
         with urllib.request.urlopen(address, timeout=5):
             return True

@@ -42,12 +42,13 @@ DRAWN = """() => {
 
 
 def stated_policy():
-    """The policy that README says is enough."""
-    return re.search(r"`(default-src[^`]*)`", (NOTEBOOKS.parent / "README.md").read_text())[1]
+    """The policy that the page on labs says is enough."""
+    text = (NOTEBOOKS.parent / "percept_obs/site/texts/use_labs.md").read_text("utf-8")
+    return re.search(r"`(default-src[^`]*)`", text)[1]
 
 
 def opened(browser, lab, policy=None, answers=None, face="workbench", **options):
-    """A page with a lab and nothing else, served under README's policy or another; `answers` is for its messages."""
+    """A page with a lab and nothing else, served under the stated policy or another; `answers` is for its messages."""
     told = {
         name: getattr(lab, name)
         for name in ("kind", "model", "settings", "summary", "analysis", "error", "asked", "written")
@@ -56,7 +57,7 @@ def opened(browser, lab, policy=None, answers=None, face="workbench", **options)
     told["texts"] = base64.b64encode(lab.texts).decode()
     films = getattr(lab, "frames", [])
     told["frames"] = [{**f, "images": [base64.b64encode(i).decode() for i in f["images"]]} for f in films]
-    bundle = (FRONT / "lab.js").read_text()
+    bundle = (FRONT / "lab.js").read_text("utf-8")
     told["_esm"] = bundle
     files = {
         "/": ("text/html", PAGE),

@@ -27,7 +27,7 @@ from percept_obs.labs import observer_lab
 lab = observer_lab({arguments})
 lab.face = "workbench"
 def keep(change):
-    pathlib.Path("state.new").write_text(json.dumps(lab.settings))
+    pathlib.Path("state.new").write_text(json.dumps(lab.settings), "utf-8")
     pathlib.Path("state.new").replace("state.json")
 lab.observe(keep, "analysis")
 lab
@@ -76,7 +76,7 @@ STATE = """(which) => {
     };
 }"""
 
-FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text()
+FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text("utf-8")
 EVENTS = sampled(100, 10_000)
 """Random events in each lab, about one for each control."""
 MOVED = sampled(4, 1)
@@ -119,7 +119,7 @@ def write_notebook(folder, name, *cells):
         for k, c in enumerate(cells)
     ]
     notebook = {"nbformat": 4, "nbformat_minor": 5, "metadata": KERNEL, "cells": code}
-    (folder / name).write_text(json.dumps(notebook))
+    (folder / name).write_text(json.dumps(notebook), "utf-8")
 
 
 def open_lab(page, folder, name="lab.ipynb", arguments="", lab="observer_lab"):
@@ -179,7 +179,7 @@ def assert_python_has(folder, settings, patience=10):
     while {key: kept.get(key) for key in settings} != settings and time.monotonic() < deadline:
         time.sleep(0.05)
         if (folder / "state.json").exists():
-            kept = json.loads((folder / "state.json").read_text())
+            kept = json.loads((folder / "state.json").read_text("utf-8"))
     assert {key: kept.get(key) for key in settings} == settings
 
 
@@ -365,7 +365,7 @@ def serious_violations(page, widths=("", "400px")):
     if not axe.exists():
         missing("node", f"axe-core is missing: run npm ci in {FRONT}.")
     page.evaluate(UNFOLD)
-    page.evaluate(axe.read_text())
+    page.evaluate(axe.read_text("utf-8"))
     serious = []
     for width in widths:
         page.evaluate(WIDTH, width)

@@ -119,11 +119,12 @@ def assert_follows_python(settings, told, tolerance=1e-8):
     and Python may differ by the tolerance, relative to 1 or the value, and by as much as that; and once Python's own
     runs have parted by 1e-4, nothing is left to compare but whether they diverge.  Over the first second they may
     differ by 1e-6 and no more.  What is told is for each observer its "estimate", with None for what is not finite,
-    and "divergedAt".
+    and "divergedAt".  Python's runs are returned, by the observers' names.
     """
     believed = settings["believed"] and affine(settings["believed"]["A"], settings["believed"]["b"])
     start = {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]
-    for name, run in python_runs(settings).items():
+    ours = python_runs(settings)
+    for name, run in ours.items():
         outputs = run.recording.outputs
         signs = np.sign(np.random.default_rng(0).uniform(-1, 1, outputs.shape))
         nudged = replace(run.recording, outputs=outputs + NUDGE * signs * np.fmax(1, np.abs(outputs)))
@@ -145,6 +146,7 @@ def assert_follows_python(settings, told, tolerance=1e-8):
         assert (off <= tolerance + own)[decided & there].all(), (name, off[decided & there].max())
         early = decided & there & (run.time <= run.time[0] + 1)[:, None]
         assert (off[early] <= 1e-6).all(), (name, off[early].max())
+    return ours
 
 
 def random_settings(lab, seed):

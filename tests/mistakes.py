@@ -158,4 +158,19 @@ MISTAKES = {
         "bigger": ["a", "c", "d"],
         "slow": [0.3, 0.6, 1.2],
     },
+    "16_your_own_film": {
+        "baseline": [
+            "Z s / (f B)",  # the relative error
+            "-Z^2 s / (f B)",  # the sign
+            "Z^2 s / B",
+            "Z s / f",  # what the error is across, not along
+        ],
+        "twice": ["a", "b", "d"],
+        "carry": [
+            (0, 0, 0.06),  # the point in the middle is told nothing
+            (0.02, 0, 0),
+            (0.2, 0, 0),  # off the table
+            (0, 0, 0),
+        ],
+    },
 }

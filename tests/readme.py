@@ -1,12 +1,13 @@
-"""README.md's parts that come from the package, its pictures and the repository's name: `python tests/readme.py`.
+"""README.md's and the site's parts that come from the package, and the repository's name: `python tests/readme.py`.
 
 It draws the pictures anew if the word `pictures` follows, for they differ a little from machine to machine.
-The name of the repository stands in ``pyproject.toml``, under ``[project.urls]``, and nowhere else by hand.
+`--owner NAME` writes the repository's address into ``pyproject.toml``, the one place from which the links of
+README.md, CITATION.cff and paper.md are made; without an address they have none that leads nowhere.
 """
 
+import argparse
 import io
 import re
-import sys
 import tomllib
 from pathlib import Path
 
@@ -36,12 +37,14 @@ from percept_obs.observers import OBSERVERS
 from percept_obs.studies.fields import PixelNoise, field_bound
 
 ROOT = Path(__file__).parents[1]
-README = ROOT / "README.md"
-PICTURES = ROOT / ".github/pictures"
-NAMES_THE_REPOSITORY = (README, ROOT / "CITATION.cff")
+PROJECT, README, CITATION, PAPER = (ROOT / n for n in ("pyproject.toml", "README.md", "CITATION.cff", "paper.md"))
+TEXTS = ROOT / "percept_obs/site/texts"
+GALLERY, OBSERVER_TABLE, PICTURES = TEXTS / "gallery.md", TEXTS / "observers.md", TEXTS / "pictures"
+MOVING = ROOT / ".github/observer_lab.gif"
 
 COLOURS = 64  # in a picture: curves and letters need no more, and the file is a quarter as large
 SCREEN = (1100, 570)
+FRAMES = 41  # of the moving picture, ten a second
 
 
 def observers_at_their_limit():
@@ -91,16 +94,77 @@ LABS = {
 }
 """Labs of the gallery, with what their pictures show."""
 
+PLAYS = f"{LABS['observer_lab'][1]} The picture plays these 4 s once."
+
+SHOW = """(share) => {
+    const [{ first: { clock } }] = window.perceptObsLabs;
+    clock.begun = true;
+    if (share < 1) clock.put(clock.start + share * (clock.end - clock.start));
+    else clock.finish();
+}"""
+"""Show a lab's first screen at a share of its time."""
+
 
 def repository():
-    """Address of the repository, as the package's metadata has it."""
-    return tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["urls"]["Repository"]
+    """Address of the repository, as the package's metadata has it; empty until it is set."""
+    return tomllib.loads(PROJECT.read_text("utf-8"))["project"]["urls"].get("Repository", "")
 
 
-def with_repository(text):
-    """A text with the repository's owner and name in its links to GitHub and Binder."""
-    name = repository().removeprefix("https://github.com/")
-    return re.sub(r"(https://(?:github\.com|mybinder\.org/v2/gh)/)[^/\s]+/[^/\s\")]+", rf"\g<1>{name}", text)
+def with_owner(project, name):
+    """The text of pyproject.toml with the repository of an owner on GitHub."""
+    if not re.fullmatch(r"[A-Za-z0-9](-?[A-Za-z0-9])*", name):
+        raise SystemExit(f"{name!r} is no name of a user on GitHub: letters, digits, and single hyphens between them")
+    line = f'Repository = "https://github.com/{name}/percept_obs"\n'
+    return re.sub(r"(\[project\.urls\].*\n)(Repository = .*\n)?", rf"\g<1>{line}", project)
+
+
+def links(address):
+    """The line of links at the top of README.md, or how to have them."""
+    if not address:
+        return "*Once this is published: `python tests/readme.py --owner NAME` adds the links to GitHub and Binder.*"
+    shown = f"[Open the course in a browser, on Binder]({binder(address)})", f"[Report a mistake]({address}/issues)"
+    return " · ".join(shown)
+
+
+def binder(address):
+    """Where Binder opens the first notebook."""
+    name = address.removeprefix("https://github.com/")
+    return f"https://mybinder.org/v2/gh/{name}/HEAD?urlpath=lab/tree/percept_obs_notebooks/00_start.ipynb"
+
+
+def with_addresses(text, address):
+    """A text whose links to files of the repository are absolute, as a registry needs them; relative without one."""
+
+    def to(found):
+        raw = address.replace("github.com", "raw.githubusercontent.com") + "/HEAD/"
+        before = address and (raw if found["picture"] else f"{address}/blob/HEAD/")
+        return f"{found['picture']}[{found['text']}]({before}{found['path']})"
+
+    absolute = r"(?:https://(?:raw\.githubusercontent|github)\.com/[^/]+/percept_obs/(?:blob/)?HEAD/)?"
+    return re.sub(rf"(?P<picture>!?)\[(?P<text>[^]]*)\]\({absolute}(?P<path>(?!https?:)[^)]+)\)", to, text)
+
+
+def readme(text, address):
+    """README.md with its links and its moving picture."""
+    text = with_part(text, "links", links(address))
+    text = with_part(text, "moving picture", f"![{PLAYS}]({MOVING.relative_to(ROOT).as_posix()})")
+    return with_addresses(text, address)
+
+
+def citation(text, address):
+    """CITATION.cff with the repository's address, if it has one."""
+    text = re.sub(r"^repository-code: .*\n", "", text, flags=re.MULTILINE)
+    return text + f'repository-code: "{address}"\n' * bool(address)
+
+
+def paper(text, address):
+    """paper.md with a sentence that says where the repository is, if it is somewhere."""
+    said = f"The repository is <{address}>; [Binder]({binder(address)}) opens the notebooks in a browser."
+    return with_part(text, "repository", said * bool(address))
+
+
+MADE = {README: readme, CITATION: citation, PAPER: paper}
+"""Files that name the repository, and what writes them."""
 
 
 def observer_table():
@@ -115,14 +179,14 @@ def observer_table():
 
 def gallery(texts):
     """Pictures by their names, with what they show."""
-    return "\n\n".join(f"![{text}]({(PICTURES / name).relative_to(ROOT)}.png)" for name, text in texts.items())
+    return "\n\n".join(f"![{text}]({PICTURES.name}/{name}.png)" for name, text in texts.items())
 
 
 def with_part(text, name, part):
     """Replace a part of a text between comments."""
-    start, end = f"<!-- {name} -->\n", "\n<!-- end -->"
+    start, end = f"<!-- {name} -->\n", "<!-- end -->"
     before, rest = text.split(start)
-    return f"{before}{start}{part}{rest[rest.index(end) :]}"
+    return f"{before}{start}{part}{chr(10) * bool(part)}{rest[rest.index(end) :]}"
 
 
 def picture(figure):
@@ -134,14 +198,37 @@ def picture(figure):
 
 
 def pictures_of_labs(chromium):
-    """All labs of the gallery."""
+    """All labs of the gallery; the first one also moves."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
         images = {name: picture_of_lab(browser, make) for name, (make, _) in LABS.items()}
+        save_moving(MOVING, moving_picture(browser))
         browser.close()
     return images
+
+
+def moving_picture(browser, count=FRAMES):
+    """Images of the lab of one point while it plays, at equal steps of its time."""
+    from first_screens import STILL, first_screen
+    from lab_alone import DRAWN
+
+    images = []
+    with first_screen(browser, observer_lab(), SCREEN, color_scheme="light") as page:
+        for k in range(count):
+            page.evaluate(SHOW, k / (count - 1))
+            page.wait_for_function(DRAWN)
+            page.evaluate(STILL)
+            images.append(Image.open(io.BytesIO(page.screenshot())).convert("RGB"))
+    return images
+
+
+def save_moving(path, images):
+    """Write images as one that plays once and rests at its end, for what moves on and on keeps from reading."""
+    colours = few(Image.fromarray(np.vstack([images[0], images[-1]])))  # the same in all, or what rests would flicker
+    first, *rest = (image.quantize(palette=colours, dither=Image.Dither.NONE) for image in images)
+    first.save(path, save_all=True, append_images=rest, duration=100, optimize=True)
 
 
 def picture_of_lab(browser, make):
@@ -154,11 +241,11 @@ def picture_of_lab(browser, make):
 
 
 def few_colours(png):
-    return (
-        Image.open(io.BytesIO(png))
-        .convert("RGB")
-        .quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    )
+    return few(Image.open(io.BytesIO(png)).convert("RGB"))
+
+
+def few(image):
+    return image.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
 
 
 def write_pictures():
@@ -175,17 +262,28 @@ def write_pictures():
     for name, image in images.items():
         image.save(PICTURES / f"{name}.png", optimize=True)
     texts = {name: text for name, (_, text) in LABS.items()} | {name: figure.text for name, figure in drawn.items()}
-    README.write_text(with_part(README.read_text("utf-8"), "gallery", gallery(texts)), "utf-8")
+    rewrite(GALLERY, lambda text: with_part(text, "gallery", gallery(texts)))
 
 
-def main(pictures):
+def rewrite(path, change):
+    """Change a text file, with the ends of lines that the repository keeps on every system."""
+    path.write_text(change(path.read_text("utf-8")), "utf-8", newline="\n")
+
+
+def main(arguments=None):
     """Write the table and the links, and the pictures if asked for."""
-    README.write_text(with_part(README.read_text("utf-8"), "observers", observer_table()), "utf-8")
-    if pictures:
+    parser = argparse.ArgumentParser(description=__doc__.partition(":")[0])
+    parser.add_argument("pictures", nargs="?", choices=["pictures"], help="draw the pictures anew")
+    parser.add_argument("--owner", metavar="NAME", help="the user or organisation on GitHub that has the repository")
+    options = parser.parse_args(arguments)
+    if options.owner:
+        rewrite(PROJECT, lambda text: with_owner(text, options.owner))
+    rewrite(OBSERVER_TABLE, lambda text: with_part(text, "observers", observer_table()))
+    if options.pictures:
         write_pictures()
-    for path in NAMES_THE_REPOSITORY:
-        path.write_text(with_repository(path.read_text("utf-8")), "utf-8")
+    for path, make in MADE.items():
+        rewrite(path, lambda text, make=make: make(text, repository()))
 
 
 if __name__ == "__main__":
-    main("pictures" in sys.argv[1:])
+    main()

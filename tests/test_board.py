@@ -41,7 +41,7 @@ def page(board, paper):
 @pytest.fixture(scope="module")
 def found(board, page):
     """The corners on the page in mm from its upper left, and their numbers; a pixel's centre is half a pixel in."""
-    numbers, pixels = board.detect(page)
+    numbers, pixels, _ = board.detect(page)
     return numbers, (pixels + 0.5) / MM
 
 
@@ -210,5 +210,5 @@ def test_the_command_overwrites_nothing_else(tmp_path, capsys, name):
 def test_a_missing_opencv_is_named_and_how_to_get_it(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("percept_obs.validation.environment.find_spec", lambda name: None)
     assert cli.main(["board", str(tmp_path / "new")]) == 2
-    assert "cv2 is missing; get it with: python -m pip install 'percept-obs[film]'" in capsys.readouterr().err
+    assert 'cv2 is missing; get it with: python -m pip install "percept-obs[film]"' in capsys.readouterr().err
     assert not (tmp_path / "new").exists()

@@ -1,36 +1,55 @@
 """The package does in a browser's Python what it does elsewhere: no threads, no processes, no extras."""
 
 import importlib.metadata
+import json
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from jupyter_harness import NOTEBOOKS
+from packaging.utils import canonicalize_name
+from sample_sizes import sampled
+from utias_folder import utias_folder
 from without_threads import required
+
+from percept_obs.exercises.models import notebooks
+from percept_obs.site.lite import BESIDE
 
 HERE = Path(__file__).parent
 
 BUILT_FOR_PYODIDE = {
     "contourpy": "1.3.3",
     "fonttools": "4.62.1",
-    "kiwisolver": "1.4.9",
+    "kiwisolver": "1.5.0",
     "matplotlib": "3.10.8",
-    "numpy": "2.4.3",
+    "numpy": "2.4.6",
     "pandas": "3.0.2",
     "pillow": "12.2.0",
-    "pyyaml": "6.0.2",
-    "scipy": "1.17.1",
+    "pyyaml": "6.0.3",
+    "scipy": "1.18.0",
 }
-"""Packages with compiled parts, as Pyodide builds them: https://anaconda.org/pyodide/repo and pyodide-lock.json of its
-releases, read in November 2026."""
+"""Packages with compiled parts, as Pyodide 314.0.6 builds them for Python 3.14: pyodide-lock.json of npm's pyodide."""
 
-PURE_AS_WELL = {"psygnal", "wcwidth"}
-"""Packages that have on PyPI, besides wheels for machines, one for any: psygnal-0.16.1-py3-none-any.whl, say."""
+IN_PYODIDE = {
+    *("asttokens", "cycler", "executing", "ipython", "jedi", "matplotlib-inline", "mpmath", "packaging", "parso"),
+    *("platformdirs", "prompt-toolkit", "pure-eval", "pygments", "pyparsing", "python-dateutil", "six", "stack-data"),
+    *("sympy", "tqdm", "traitlets", "typing-extensions", "tzdata", "wcwidth", "xarray", *BUILT_FOR_PYODIDE),
+}
+"""Packages that Pyodide 314.0.6 has, of those that are required here."""
+
+OF_THE_KERNEL = {"widgetsnbextension"}
+"""Packages that come with JupyterLite's Python."""
+
+FROM_PYPI = {"ipython-pygments-lexers", "psygnal"}
+"""Packages that a reader's browser fetches from PyPI; psygnal has, besides wheels for machines, one for any."""
 
 
 @pytest.mark.slow
-def test_a_course_runs_without_threads_processes_and_extras(tmp_path):
-    command = [sys.executable, HERE / "without_threads.py", tmp_path]
+@pytest.mark.parametrize("extra", [[], ["data"]], ids=["plain", "data"])
+def test_a_course_runs_without_threads_processes_and_other_extras(tmp_path, extra):
+    command = [sys.executable, HERE / "without_threads.py", tmp_path, *extra]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stderr
     assert {path.name for path in tmp_path.iterdir()} == {
@@ -43,17 +62,43 @@ def is_pure(name):
 
 
 def test_every_package_that_is_required_is_pure_or_built_for_the_browser():
-    found = {name.lower(): wanted for name, wanted in required().items()}
+    found = {name.lower(): wanted for name, wanted in required(extra="data").items()}
+    assert not {"pandas", "pyyaml"} & set(map(str.lower, required())), "a plain install has grown"
     assert {"numpy", "sympy", "anywidget", "ipython", "traitlets"} <= set(found)
-    assert {name.lower() for name in found if not is_pure(name)} <= {*BUILT_FOR_PYODIDE, *PURE_AS_WELL}
+    assert {name.lower() for name in found if not is_pure(name)} <= {*BUILT_FOR_PYODIDE, "psygnal", "wcwidth"}
     assert not {"numba", "psutil", "pyzmq", "tornado", "jupyterlab"} & set(found)
     for name, version in BUILT_FOR_PYODIDE.items():
         assert version in found[name], f"{name} {version} is what Pyodide has; {found[name]} is asked for"
 
 
+def test_every_package_is_pyodide_s_or_stands_beside_the_notebooks_or_comes_from_pypi():
+    found = {canonicalize_name(name) for name in (*required(), *required("filterpy"), "filterpy", "comm", "xarray")}
+    beside = {canonicalize_name(name) for name in BESIDE}
+    assert not beside & IN_PYODIDE
+    assert found - IN_PYODIDE - beside - OF_THE_KERNEL <= FROM_PYPI
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("what", ["modules", *sampled(["00_start.ipynb"], sorted(notebooks()))])
+def test_modules_import_and_notebooks_run_without_threads_processes_sockets_and_numba(what, tmp_path, monkeypatch):
+    if "load_utias" in json.dumps(notebooks().get(what)):
+        monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(utias_folder()))
+    command = [sys.executable, HERE / "without_threads.py", what if what == "modules" else NOTEBOOKS / what]
+    before = children_computed()
+    answer = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert answer.returncode == 0, answer.stderr[-2000:]
+    print(f"{what:32} {children_computed() - before:6.1f} s of computing")
+
+
+def children_computed():
+    """Seconds that processes started here have computed."""
+    times = os.times()
+    return times.children_user + times.children_system
+
+
 def test_the_wheel_has_nothing_compiled():
     files = [path for path in (HERE.parent / "percept_obs").rglob("*") if "node_modules" not in path.parts]
     assert not [path for path in files if path.suffix in (".so", ".pyd", ".dll", ".c", ".pyx")]
-    settings = (HERE.parent / "pyproject.toml").read_text()
+    settings = (HERE.parent / "pyproject.toml").read_text("utf-8")
     assert 'build-backend = "hatchling.build"' in settings
     assert "hooks" not in settings, "which could make the wheel one for a single machine"

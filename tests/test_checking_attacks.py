@@ -29,6 +29,7 @@ def test_there_are_two_hundred_of_each():
     assert len(HOSTILE) >= 200
 
 
+@pytest.mark.slow
 def test_what_is_nearly_the_same_is_not_called_right():
     found = [(family, str(one), str(other)) for family, one, other in some(ATTACKS, 25) if check(one, other).right]
     assert found == []

@@ -12,6 +12,7 @@ from examples import MOTIONS
 from refusals import refuses
 
 from percept_obs import CannotRead, PerspectiveSystem, check, pinhole
+from percept_obs.checking import spelling
 from percept_obs.checking.deciding import explicit, same
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import read
@@ -343,3 +344,18 @@ def test_whatever_is_typed_is_read_or_refused():
             outcomes["refused"] += 1
     assert outcomes["read"] > 30
     assert outcomes["refused"] > 2000
+
+
+@pytest.mark.slow
+def test_a_parser_that_was_kept_is_the_one_that_was_made_and_one_that_was_cut_off_is_made_anew(tmp_path, monkeypatch):
+    monkeypatch.setattr(spelling, "user_cache_path", lambda name: tmp_path / name)
+    make = spelling.parser.__wrapped__
+    made = make()
+    (file,) = tmp_path.rglob("*.parser")
+    whole = file.read_bytes()
+    kept = make()
+    assert kept.rules == made.rules
+    assert [t.pattern.to_regexp() for t in kept.terminals] == [t.pattern.to_regexp() for t in made.terminals]
+    file.write_bytes(whole[:1000])
+    assert make().rules == made.rules
+    assert len(file.read_bytes()) > 1000

@@ -123,7 +123,7 @@ def test_jupyterlab_opens_the_first_notebook_and_outlives_control_c(launches, tm
 def test_a_missing_jupyterlab_is_named_and_how_to_get_it(launches, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(util, "find_spec", lambda name: None)
     assert cli.main(["lab", str(tmp_path)]) == 1
-    assert "pip install jupyterlab" in capsys.readouterr().err
+    assert 'pip install "percept-obs[lab]"' in capsys.readouterr().err
     assert launches == []
     assert (tmp_path / "00_start.ipynb").is_file()
 

@@ -109,6 +109,7 @@ def test_a_product_and_a_sum_rounded_once_move_no_reset():
     assert counted > 1000
 
 
+@pytest.mark.slow
 def test_only_flows_that_do_not_jump_are_rounded_less_often(monkeypatch):
     asked = []
     monkeypatch.setattr(kernels, "machine_code", lambda text, signature, rounding: asked.append(rounding))
@@ -202,6 +203,9 @@ def test_the_call_alone_says_in_which_language_it_runs(monkeypatch):
     assert points_kernel.choose(None, 1) == "python"
     monkeypatch.setattr(kernels, "find_spec", lambda name: None)
     assert kernels.choose(None, many) == "python"
+    monkeypatch.setattr("percept_obs.validation.environment.find_spec", lambda name: None)
+    with pytest.raises(ModuleNotFoundError, match=r"numba is missing; get it with: .*fast"):
+        kernels.choose("numba", 1)
 
 
 def test_a_run_is_made_in_the_language_that_was_chosen(monkeypatch):

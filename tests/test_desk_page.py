@@ -83,6 +83,7 @@ def test_what_is_the_same_by_a_relation_of_functions_is_right_and_no_attack_on_t
     } == {}
 
 
+@pytest.mark.slow
 def test_a_formula_stands_as_it_was_typed_complete_or_not_and_nothing_becomes_a_part_of_the_page(node):
     begun = ["a11 (", "a11 +", "y1^", "/", ")", "((y1)", "sqrt(y1", "\\frac{y1}{", "y1' =", "= y1", "|", "^^", "x < y1"]
     texts = [*begun, *(text for text in HOSTILE if text.strip() and len(text) <= LONGEST_LINE)]

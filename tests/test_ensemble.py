@@ -113,6 +113,7 @@ def test_true_and_believed_motion_and_surface_vary(hold):
     assert_alike(found.sel(**one, believed_b1=0.45, seed=0), run, 0.0, 1e-9)
 
 
+@pytest.mark.slow
 def test_the_motion_may_vary_over_time_and_so_may_the_clock():
     motion = affine(EQ35.motion.A.subs(EQ35.motion.values), lambda t: [0.5, 0.25 + 0.1 * np.sin(t), 0.3])
     scenario = Scenario("waving", motion, (1.0, 1.5, 2.5), 5.0, pinhole())
@@ -298,5 +299,5 @@ def test_an_observer_that_does_not_fit_is_refused():
 
 def test_what_is_missing_is_told_with_how_to_get_it(monkeypatch):
     monkeypatch.setattr(environment, "find_spec", lambda name: None)
-    with pytest.raises(ModuleNotFoundError, match=r"xarray is missing; get it with: .*'percept-obs\[cluster\]'"):
+    with pytest.raises(ModuleNotFoundError, match=r'xarray is missing; get it with: .*"percept-obs\[cluster\]"'):
         ensemble(EQ35, ibo(AFFINE.measure("y1")))

@@ -60,7 +60,7 @@ def test_it_opens_with_few_words_and_controls_and_large_pictures(name, size, bro
 
 @pytest.mark.parametrize("name", LABS)
 def test_what_an_answer_claims_holds_in_the_picture(name, browser):
-    with first_screen(browser, LABS[name]()) as page:
+    with first_screen(browser, LABS[name](), reduced_motion="reduce") as page:
         for question in page.evaluate(QUESTIONS):
             asked(page, question)
             holds, said = page.evaluate(HOLDS)
@@ -162,7 +162,8 @@ HIGH = 120
 def test_every_picture_is_high_and_not_of_one_colour(name, kept, browser, tmp_path):
     lab = LABS[name]()
     lab.save(tmp_path / "lab.html")
-    page = browser.new_page() if kept else opened(browser, lab, face="first")
+    still = {"reduced_motion": "reduce"}
+    page = browser.new_page(**still) if kept else opened(browser, lab, face="first", **still)
     if kept:
         page.goto((tmp_path / "lab.html").as_uri())
     page.wait_for_function(READY)

@@ -112,7 +112,7 @@ def test_the_table_says_what_is_tried():
 
 
 def test_the_bundle_keeps_the_rules():
-    text = BUNDLE.read_text()
+    text = BUNDLE.read_text("utf-8")
     assert len(re.findall(r"\bimport\s*[({*]", text)) == len(re.findall(r"createObjectURL\(", text)) - 1 == 1
     evaluates, fetches = r"\beval\s*\(|\bFunction\s*\(", r"\bfetch\(|XMLHttpRequest|WebSocket|importScripts"
     assert not re.search(f"{evaluates}|{fetches}|msg:custom", text)

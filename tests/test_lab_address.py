@@ -173,7 +173,7 @@ def page(browser, tmp_path):
     page.on("console", lambda said: complaints.append(said.text) if said.type in ("error", "warning") else None)
 
     def shown(text, link=""):
-        (tmp_path / "lab.html").write_text(text)
+        (tmp_path / "lab.html").write_text(text, "utf-8")
         page.goto("about:blank")
         page.goto((tmp_path / "lab.html").as_uri() + link)
         page.wait_for_function(DRAWN)
@@ -326,7 +326,7 @@ def test_of_points_a_run_ends_with_the_samples_of_its_own_motion(page):
 @pytest.mark.slow
 def test_two_labs_of_a_page_each_read_their_own_part(page):
     states = [lab.get_state() for lab in (observer_lab("ma2005_eq35"), observer_lab(outputs=["y1"]), points_lab())]
-    starter = STARTER.read_text()
+    starter = STARTER.read_text("utf-8")
     places = "".join(place_of(state) for state in states)
     text = f"<!doctype html><body>{places}<script>{library_of(states)}</script><script>{starter}</script>"
     shown = page(text, "#observer-2=1;seed=7&points=1;spin=0.5")

@@ -22,7 +22,9 @@ def npm(node):
     npm = shutil.which("npm")
     if npm is None or not (FRONT / "node_modules").exists():
         missing("node", f"The front end's packages are missing: get npm, and run npm ci in {FRONT}.")
-    return lambda *script: subprocess.run([npm, "run", "--silent", *script], cwd=FRONT, capture_output=True, text=True)
+    return lambda *script: subprocess.run(
+        [npm, "run", "--silent", *script], cwd=FRONT, capture_output=True, encoding="utf-8"
+    )
 
 
 @pytest.mark.node
@@ -42,7 +44,7 @@ def test_the_sources_pass_their_linter_their_types_and_their_own_tests(npm, scri
 
 
 def test_the_bundle_loads_nothing_from_a_network():
-    assert "http" not in base.BUNDLE.read_text().replace("http://www.w3.org/", "")
+    assert "http" not in base.BUNDLE.read_text("utf-8").replace("http://www.w3.org/", "")
 
 
 def test_a_name_is_shown_and_is_never_markup():

@@ -90,6 +90,7 @@ def test_the_cascade_in_matrices_is_the_linear_approximation_observer(form):
         before = dict(zip(form.x2, estimate[n1:], strict=True))
 
 
+@pytest.mark.slow
 def test_a_reset_tells_its_condition_once():
     for make in OBSERVERS:
         for variant in equations_of(make):

@@ -38,7 +38,7 @@ def test_a_number_out_of_range_is_told_what_the_field_takes(show):
 
 
 def test_a_press_that_changes_the_true_world_says_so(show):
-    page = show(structure_lab(duration=3.0), viewport=SIZE)
+    page = show(structure_lab(duration=3.0, period=0.01, step=0.01), viewport=SIZE)
     page.click(control("topic cases"))
     page.click(control("corollary 3"))
     drawn(page)

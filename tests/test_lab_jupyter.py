@@ -119,7 +119,7 @@ def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_pa
     page = browser_page
     cells = [
         OPEN.format(arguments=""),
-        "from percept_obs.labs import structure_lab\nstructure_lab(duration=3.0, face='workbench')",
+        "import percept_obs.labs as labs\nlabs.structure_lab(duration=3, period=0.01, step=0.01, face='workbench')",
         "from percept_obs.labs import points_lab\npoints_lab(duration=8.0)",  # one opens with its first screen
         "other = observer_lab(outputs=['y1'], face='workbench')\nother",
     ]
@@ -173,7 +173,7 @@ def test_a_restarted_kernel_leaves_the_lab_alive_and_one_that_has_ended_says_how
     ended.wait_for(state="attached")
     assert ended.is_hidden()
     page.keyboard.press("Control+s")
-    wait_until(lambda: "percept-obs-ended" in (folder / "again.ipynb").read_text(), "the notebook to be saved")
+    wait_until(lambda: "percept-obs-ended" in (folder / "again.ipynb").read_text("utf-8"), "the notebook to be saved")
     (session,) = [s for s in page.request.get("/api/sessions").json() if s["path"] == "again.ipynb"]
     xsrf = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "_xsrf")
     page.request.delete(f"/api/sessions/{session['id']}", headers={"X-XSRFToken": xsrf})

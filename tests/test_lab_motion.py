@@ -8,7 +8,11 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-LABS = {"observer": observer_lab, "structure": lambda: structure_lab(duration=3.0), "points": points_lab}
+LABS = {
+    "observer": observer_lab,
+    "structure": lambda: structure_lab(duration=3.0, period=0.01, step=0.01),
+    "points": points_lab,
+}
 COUNT = """() => {
     const [lab] = window.perceptObsLabs;
     window.runs = 0;

@@ -10,7 +10,11 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 BEHIND = {
     "observer": (observer_lab, "{ X0: [1, 1.5, -1] }", "start X"),
-    "structure": (lambda: structure_lab(duration=3.0), "{ ybar: [0.3, 0.3, -0.05] }", "start ȳ3"),
+    "structure": (
+        lambda: structure_lab(duration=3.0, period=0.01, step=0.01),
+        "{ ybar: [0.3, 0.3, -0.05] }",
+        "start ȳ3",
+    ),
 }
 CHANGE = "() => [...window.perceptObsLabs][0].change({}, true)"
 B = "() => [...window.perceptObsLabs][0].settings.b"
@@ -102,7 +106,7 @@ def test_without_translation_there_is_no_focus_of_expansion_and_the_lab_says_so(
     assert page.locator(control("foe")).is_hidden()
 
 
-@pytest.mark.parametrize("make", [observer_lab, lambda: structure_lab(duration=3.0)])
+@pytest.mark.parametrize("make", [observer_lab, lambda: structure_lab(duration=3.0, period=0.01, step=0.01)])
 def test_the_chart_that_names_the_tolerance_shows_it(show, make):
     page = show(make())
     page.click(control("zoom whole"))

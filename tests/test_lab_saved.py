@@ -12,7 +12,7 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-LABS = [observer_lab, points_lab, lambda: structure_lab(duration=3.0)]
+LABS = [observer_lab, points_lab, lambda: structure_lab(duration=3.0, period=0.01, step=0.01)]
 
 SHOW = """async ({ state, buffers }) => {
     for (const { path, data } of buffers) {

@@ -53,7 +53,7 @@ def test_nothing_of_a_run_is_stored(name):
         assert not re.fullmatch(r"[0-9a-f]{8}", cell["id"]), "an id by which a cell is known, not a random one"
         assert not cell.get("outputs")
         assert cell.get("execution_count") is None
-        assert set(cell["metadata"]) <= {"tags"}
+        assert set(cell["metadata"]) <= {"tags", "percept_obs"}
 
 
 @pytest.mark.parametrize("name", NAMES)

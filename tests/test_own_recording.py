@@ -15,6 +15,7 @@ from percept_obs.recording.pose_files import write_tum
 from percept_obs.recording.stereo_mat import DERIVATIVE, read_stereo_mat
 from percept_obs.recording.track_files import write_tracks
 from percept_obs.recording.worked import WORKED_CAMERA, worked_folder
+from percept_obs.site import TEXTS
 
 TIME = np.arange(0, 2, 0.01)
 POSES = poses(TIME)
@@ -249,14 +250,13 @@ def test_tracks_that_another_program_wrote_are_the_same(utias_files):
 
 @pytest.mark.slow
 def test_from_a_folder_to_a_table_of_all_observers_in_eight_lines(tmp_path, monkeypatch):
-    """The lines are those of the README."""
-    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
-    lines = readme.split("<!-- own recording -->\n```python\n")[1].split("```")[0]
+    """The lines are those of the page on recordings."""
+    lines = (TEXTS / "own.md").read_text("utf-8").split("<!-- own recording -->\n```python\n")[1].split("```")[0]
     assert len(list(filter(None, lines.splitlines()))) <= 8
     *program, table = ast.parse(lines).body
     names = {}
-    exec(compile(ast.Module(program[:2], []), "<README>", "exec"), names)
-    exec(compile(ast.Module([program[3]], []), "<README>", "exec"), names)
+    exec(compile(ast.Module(program[:2], []), "<own.md>", "exec"), names)
+    exec(compile(ast.Module([program[3]], []), "<own.md>", "exec"), names)
     write_tum(tmp_path / "poses.txt", poses(TIME, noise=1e-4))
     films = []
     for points in seen(TIME)[:4]:
@@ -264,8 +264,8 @@ def test_from_a_folder_to_a_table_of_all_observers_in_eight_lines(tmp_path, monk
         films.append(Recording(TIME[5:190:5], truth[:, :2], ("y1", "y2"), pinhole(), MOTION, truth))
     write_tracks(tmp_path / "tracks.csv", films, names["camera"])
     monkeypatch.chdir(tmp_path)
-    exec(compile(ast.Module(program, []), "<README>", "exec"), names)
-    found = eval(compile(ast.Expression(table.value), "<README>", "eval"), names)
+    exec(compile(ast.Module(program, []), "<own.md>", "exec"), names)
+    found = eval(compile(ast.Expression(table.value), "<own.md>", "eval"), names)
     assert (len(found.choosing), len(found.reporting)) == (2, 2)
     table = found.side_by_side
     assert len(table) == 12

@@ -57,6 +57,7 @@ def test_a_filter_claims_a_range_only_after_the_own_ship_accelerated(accelerates
     assert (bound.relative[-1] < 0.05) == accelerates
 
 
+@pytest.mark.slow
 def test_on_a_straight_course_the_range_is_in_no_rate_but_its_own():
     form = bearings_only().partition("y3")
     steady = form.rate[:-1, :].xreplace(dict.fromkeys(ACCELERATION, sp.S.Zero))

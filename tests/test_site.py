@@ -63,8 +63,13 @@ def pages(tmp_path_factory):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the generator's own
         ledgers = sampled({PAPER: NAMED[PAPER]}, NAMED)
-        site.build(target, copies, ledgers, tell=lambda text: None, exam=True, address=ADDRESS)
+        site.build(target, copies, ledgers, tell=lambda text: None, exam=True, address=ADDRESS, python=True)
     return target
+
+
+def written(pages):
+    """The pages, in order; those of JupyterLite are no pages of ours."""
+    return sorted(path for path in pages.rglob("*.html") if path.relative_to(pages).parts[0] != "lite")
 
 
 def _add_a_second_lab(notebook):
@@ -76,14 +81,18 @@ def _add_a_second_lab(notebook):
 
 def to_look_at(pages):
     """A page of each kind; with ALL_SAMPLES all of them, which takes a while."""
-    found = sorted(pages.rglob("*.html"))
+    found = written(pages)
     return sampled(list({path.parent: path for path in reversed(found)}.values()), found)
 
 
 @pytest.mark.slow
 def test_every_link_leads_somewhere(pages):
-    found = {path: Links(path) for path in pages.rglob("*.html")}
+    found = {path: Links(path) for path in written(pages)}
     assert len(found) > 25
+    assert (
+        f"../lite/lab/index.html?path={NOTEBOOK}"
+        in found[(pages / "notebooks" / NOTEBOOK).with_suffix(".html")].targets
+    )
     for path, links in found.items():
         for target in links.targets:
             address, place = urldefrag(target)
@@ -108,10 +117,10 @@ def complaints_of(page):
 @pytest.mark.slow
 @pytest.mark.browser
 def test_every_page_opens_without_an_error_or_a_request(pages, browser):
-    axe = (FRONT / "node_modules/axe-core/axe.min.js").read_text()
+    axe = (FRONT / "node_modules/axe-core/axe.min.js").read_text("utf-8")
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
     complaints, labs, looked_at = complaints_of(page), 0, to_look_at(pages)
-    for path in sorted(pages.rglob("*.html")):
+    for path in written(pages):
         page.goto(path.as_uri())
         if page.locator("[data-percept-obs]").count():
             page.wait_for_function(DRAWN)
@@ -197,7 +206,7 @@ def test_lighthouse_finds_every_page_open_to_all(pages, chromium, node):
         missing("lighthouse", f"Lighthouse is missing; get it with: npm install --no-save lighthouse@12, in {FRONT}")
     names = [path.relative_to(pages).as_posix() for path in to_look_at(pages)]
     command = [node, Path(__file__).with_name("lighthouse.mjs"), modules, chromium, pages, *names]
-    lines = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
+    lines = subprocess.run(command, check=True, capture_output=True, encoding="utf-8").stdout.splitlines()
     found = [json.loads(line) for line in lines]
     least = min(found, key=lambda page: page["mark"])
     print(f"{len(found)} pages; the least mark is {least}")
@@ -213,8 +222,9 @@ def test_a_signature_names_a_long_default(pages):
 
 @pytest.mark.slow
 def test_every_page_says_what_it_is_and_where(pages):
-    found = [path for path in pages.rglob("*.html") if "_static" not in path.parts]
+    found = [path for path in written(pages) if "_static" not in path.parts]
     sitemap = (pages / "sitemap.xml").read_text(encoding="utf-8")
+    assert sitemap.count("<loc>") == len(found)
     descriptions = set()
     for path in found:
         text, address = path.read_text(encoding="utf-8"), f"{ADDRESS}/{path.relative_to(pages).as_posix()}"
@@ -289,7 +299,7 @@ def test_what_may_be_wider_than_the_page_is_scrolled_by_keys(wide):
 
 
 def test_a_formula_is_written_for_the_browser():
-    pytest.importorskip("latex2mathml", reason="get it with: python -m pip install 'percept-obs[site]'")
+    pytest.importorskip("latex2mathml", reason='get it with: python -m pip install "percept-obs[site]"')
     assert mathml(r"$\displaystyle \frac{1}{y_3}$", "block").startswith("<math")
 
 
@@ -298,5 +308,8 @@ def test_what_is_missing_is_named_with_the_command_that_gets_it(monkeypatch, cap
         "percept_obs.validation.environment.find_spec", lambda module: None if module == "furo" else object()
     )
     assert cli.main(["site", str(tmp_path / "new")]) == 1
-    assert "furo is missing; get it with: python -m pip install 'percept-obs[site]'" in capsys.readouterr().err
+    assert 'furo is missing; get it with: python -m pip install "percept-obs[site]"' in capsys.readouterr().err
+    monkeypatch.setattr("percept_obs.validation.environment.find_spec", lambda module: "lite" not in module or None)
+    assert cli.main(["site", str(tmp_path / "new"), "--python"]) == 1
+    assert "jupyterlite_core, jupyterlite_pyodide_kernel is missing; get it with" in capsys.readouterr().err
     assert not Path(tmp_path / "new").exists()

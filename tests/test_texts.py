@@ -45,8 +45,18 @@ def test_the_exam_s_solutions_compute_what_they_say():
     assert all(">>> " in question for question in questions)
 
 
+@pytest.mark.slow
+def test_the_lines_of_the_tour_run_and_give_what_they_say():
+    names = {}
+    for block in re.findall(r"```python\n(.*?)```", ON_THE_SITE["tour.md"], re.DOTALL):
+        exec(compile(block, "<tour.md>", "exec"), names)
+    assert names["review"].right is False
+    assert "b3" in str(names["review"].hint(2))
+    assert "10 %" in str(names["run"].verdict())
+
+
 def test_every_notebook_stands_in_the_lecture_map():
-    lectures = GUIDE[GUIDE.index("| lecture |") : GUIDE.index("## Two lesson plans")]
+    lectures = GUIDE[GUIDE.index("| lecture |") : GUIDE.index("## Lesson plans")]
     assert set(SECTIONS) <= set(re.findall(r'nb\["(\d\d)"\]', lectures))
 
 
@@ -55,6 +65,15 @@ def test_the_sections_that_the_guide_names_exist():
     assert len(found) > 20
     for notebook, first, _, last in found:
         assert {int(first), int(last or first)} <= SECTIONS[notebook], (notebook, first, last)
+
+
+def test_each_learning_goal_has_an_exercise_that_is_there():
+    plans = GUIDE[GUIDE.index("## Lesson plans") : GUIDE.index("## What students")]
+    goals = re.findall(r"^(?:- |\| \d \| ).*$", plans, re.MULTILINE)
+    assert len(goals) == 3 + 4 + 8
+    for goal in goals:
+        ((notebook, number),) = re.findall(r'nb\["(\d\d)"\] }}, exercise (\d)', goal)
+        assert f"**Exercise {number}:" in "".join(p.read_text("utf-8") for p in NOTEBOOKS.glob(f"{notebook}_*.ipynb"))
 
 
 @pytest.mark.parametrize("minutes", [45, 90])

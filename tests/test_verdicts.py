@@ -76,6 +76,7 @@ def test_an_observer_that_is_switched_off_has_not_converged():
     assert off.outcome().kind in ("outside", "behind")
 
 
+@pytest.mark.slow
 def test_a_point_far_away_before_a_camera_at_rest_is_not_found():
     recording = record(REST)
     for make in OBSERVERS:

@@ -1,16 +1,23 @@
 """Spelling: characters, what stands around formulas, and names, before anything is parsed."""
 
 import re
+import sys
 import unicodedata
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache, lru_cache
+from hashlib import sha256
+from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
 
+import lark
 from lark import Lark, Token
 from lark.lexer import LexerThread
+from platformdirs import user_cache_path
 
 from percept_obs.checking.points import key
+from percept_obs.validation import write_whole
 
 GREEK = """alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon
 phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"""
@@ -58,8 +65,17 @@ def _plain(c: str) -> str:
 
 @cache
 def parser() -> Lark:
-    """The parser of formulas."""
-    return Lark(_grammar(), parser="lalr", lexer="basic", start=["lines", "words"], propagate_positions=True)
+    """The parser of formulas, which takes a second to make and so stays in the user's cache."""
+    told = f"{_grammar()} {lark.__version__} {sys.version}"
+    file = user_cache_path("percept_obs") / f"formulas_{sha256(told.encode()).hexdigest()[:32]}.parser"
+    with suppress(Exception), file.open("rb") as kept:  # what was cut off may raise anything
+        return Lark.load(kept)
+    made = Lark(_grammar(), parser="lalr", lexer="basic", start=["lines", "words"], propagate_positions=True)
+    with suppress(OSError):
+        made.save(packed := BytesIO())
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(file, packed.getvalue())
+    return made
 
 
 @cache

@@ -30,9 +30,11 @@ def vectorised(
     constants = tuple((values or {}).values())
 
     def evaluate(*arrays: ArrayLike) -> list[Array]:
-        columns = np.broadcast_arrays(*(np.asarray(a, dtype=float) for a in arrays)) if arrays else []
-        shape = columns[0].shape if columns else ()
-        return [np.broadcast_to(np.asarray(r, dtype=float), shape) for r in function(*columns, *constants)]
+        columns = [np.asarray(a, dtype=float) for a in arrays]
+        found = np.empty((len(expressions), *np.broadcast_shapes(*(column.shape for column in columns))))
+        for k, result in enumerate(function(*columns, *constants)):
+            found[k] = result
+        return list(found)
 
     return evaluate
 

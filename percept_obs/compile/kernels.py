@@ -17,6 +17,7 @@ from percept_obs.compile.equations import Equations
 from percept_obs.compile.functions import executed
 from percept_obs.compile.loop import source
 from percept_obs.compile.machine_code import machine_code
+from percept_obs.validation import needed
 
 Language = Literal["python", "numba"]
 
@@ -32,6 +33,8 @@ def choose(language: Language | None, steps: float) -> Language:
     """
     if language not in (None, "python", "numba"):
         raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
+    if language == "numba":
+        needed("fast", "numba")
     return language or ("numba" if steps >= WORTH_COMPILING and find_spec("numba") else "python")
 
 

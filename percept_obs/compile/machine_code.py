@@ -57,7 +57,8 @@ def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Cal
     try:
         if not file.exists():
             folder.mkdir(parents=True, exist_ok=True)
-            write_whole(file, text.encode())  # other processes may read it
+            with suppress(PermissionError):  # on Windows, where another process has just written it, and reads it
+                write_whole(file, text.encode())
         return compiled(str(file), True)
     except Exception as error:  # a full disk, or what was kept is cut off: unpickling it may raise anything
         with suppress(OSError):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from types import EllipsisType
+from types import EllipsisType, MappingProxyType
 from typing import Any
 
-from percept_obs.checking import Review, check, target_of
+from percept_obs.checking import Review, Target, check, target_of
 from percept_obs.validation.kinds import is_real
 
 
@@ -53,7 +54,9 @@ REFUSALS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 """Errors that an answer of another kind than is asked for raises where it is used."""
 
 
-def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
+def derive(
+    mine: Any, target: Any, *asked: str, letters: Mapping[str, float] = MappingProxyType({})
+) -> Attempt | Review:
     """Check a formula by `percept_obs.check`; dots are no answer yet, and no line may be missing.
 
     Parameters
@@ -62,6 +65,8 @@ def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
     target : as for `check`
     *asked : str
         The names of the lines that are asked for, such as "y1'"; all lines without them.
+    letters : mapping of names to numbers
+        Letters that stand with a factor in this task, as a student's own has them.
 
     Returns
     -------
@@ -81,10 +86,12 @@ def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
     Not answered yet. Put your answer in the place of the dots, and run both cells.
     >>> derive("y3' = -y3 (a31 y1 + a32 y2 + a33 + b3 y3)", system, "y3'").right
     True
+    >>> derive("y3' = -y3 (a31 y1 + a32 y2 + a33 - 2 b3 y3)", system, "y3'", letters={"b3": -2}).right
+    True
     """
     if isinstance(mine, EllipsisType):
         return Attempt(None, UNANSWERED)
-    goal = target_of(target)
+    goal = _with_factors(target_of(target), letters) if letters else target_of(target)
     try:
         review = check(mine, goal)
     except REFUSALS as error:  # CannotRead is one of them; the place in the text stands below a blank line
@@ -96,6 +103,14 @@ def derive(mine: Any, target: Any, *asked: str) -> Attempt | Review:
         if row not in answered and (not asked or line.name in asked)
     ]
     return Attempt(False, f"This is asked for as well: {', '.join(missing)}.") if missing else review
+
+
+def _with_factors(target: Target, factors: Mapping[str, float]) -> Target:
+    """Return a target with a number before some letters, and before all entries of those that are matrices."""
+    used = set().union(*(line.formula.free_symbols for line in target.lines))
+    known = {s: factors[name] * s for s in used for name in (s.name, re.sub(r"_\d+$", "", s.name)) if name in factors}
+    lines = tuple(replace(line, formula=line.formula.xreplace(known)) for line in target.lines)
+    return replace(target, lines=lines, derivation=None, elsewhere=None, others={})
 
 
 def choose(mine: str | EllipsisType, found: str, **options: bool) -> Attempt:

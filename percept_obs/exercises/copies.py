@@ -6,6 +6,7 @@ The cells of an exercise are known by their tags: ``exercise``, ``hint`` and ``s
 from __future__ import annotations
 
 import ast
+import json
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
@@ -19,6 +20,9 @@ OWN_WORDS = "*Answer in the cell below, in your own words; then it shows a model
 ASKED = """from percept_obs.exercises import model_answer
 
 model_answer(..., "{}")  # your answer, in quotes, for the dots"""
+
+CHECK = "-check"
+"""End of the names of cells that check an answer; before it stands the name of the answer's cell."""
 
 
 def stub(solution: str) -> str:
@@ -83,8 +87,12 @@ def _for_students(cell: Notebook) -> Iterator[dict[str, Any]]:
     """Yield a cell as students get it: after each question a cell that shows the model answer to who has answered."""
     answers, text = answers_in(cell), "".join(cell["source"])
     if not answers:
-        solved = "solution" in cell["metadata"].get("tags", ())
-        yield {**cell, "source": (stub(text) if solved else text).splitlines(keepends=True)}
+        tags = cell["metadata"].get("tags", ())
+        if "solution" in tags:
+            text = stub(text)
+        elif cell["cell_type"] == "code" and "exercise" in tags and cell.get("id", "").endswith(CHECK):
+            text = _tallied(text, cell["id"].removesuffix(CHECK))
+        yield {**cell, "source": text.splitlines(keepends=True)}
         return
     parts = ["", ""] if text == answers[0] else FOLDED.split(text)[::2]
     for k, part in enumerate(parts):
@@ -94,6 +102,14 @@ def _for_students(cell: Notebook) -> Iterator[dict[str, Any]]:
             yield _cell(cell, "markdown", words, f"-{k + 1}" if k else "")
         if not last:
             yield _cell(cell, "code", ASKED.format(key_of(answers[k])), f"-answer-{k + 1}")
+
+
+def _tallied(check: str, task: str) -> str:
+    """Return a check that counts its attempts."""
+    lines = check.splitlines(keepends=True)
+    begin = ast.parse(check).body[-1].lineno - 1
+    reply = "".join(lines[begin:]).strip()
+    return f"from percept_obs.exercises import tally\n\n{''.join(lines[:begin])}tally({reply}, {json.dumps(task)})"
 
 
 def _cell(cell: Notebook, kind: str, text: str, mark: str) -> dict[str, Any]:

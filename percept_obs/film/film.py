@@ -11,6 +11,7 @@ import numpy as np
 from percept_obs.compile import Array
 from percept_obs.film.board import Board
 from percept_obs.film.lens import Seen
+from percept_obs.film.overlay import write_overlay
 from percept_obs.film.sighting import Sighting
 from percept_obs.film.video import Video
 from percept_obs.observers import Observer, ekf
@@ -23,13 +24,16 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
-from percept_obs.validation import bar
+from percept_obs.validation import bar, load_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
 
 TRIANGULATION = "triangulation"
 """Name of the distance that the whole film tells of a point at rest."""
+
+CUT_OFF = 0.95
+"""Share of a film's pictures below which it is said that some are missing."""
 
 ALIKE = 1.0
 """Seconds in which the errors of corners stay alike, for they come of blur, compression and the lens."""
@@ -52,8 +56,10 @@ class Film(Footage):
         In pixels of the film.
     path : CameraPath
         Smoothed poses and velocities; the world is the board: x along its rows, y down, z into it, in metres.
-    findings : tuple of Finding
+    findings : tuple of percept_obs.studies.diagnosis.Finding
         Mistakes that the pictures show.
+    focal_deviation : float
+        Standard deviation of the focal length, relative; the distance of the camera from the board has the same.
     board : Board, optional
     seen : Seen, optional
         Poses from the board with their covariance.
@@ -75,6 +81,7 @@ class Film(Footage):
     path: CameraPath
     findings: tuple[Finding, ...]
     sighting: Sighting
+    focal_deviation: float = 0.0
     board: Board | None = None
     seen: Seen | None = None
 
@@ -99,8 +106,12 @@ class Film(Footage):
         )
         if self.seen is not None:
             first += f", with corners to {self.seen.error:.2g} pixels"
+        if self.focal_deviation:
+            first += f" and the focal length to {100 * self.focal_deviation:.2g} %"
         said = [f"{first}; {corners} tracks of the board's corners, {len(self) - corners} of other points."]
         said += [f"{each.sentence[0].upper()}{each.sentence[1:]}: {each.evidence}." for each in self.findings]
+        if len(time) < CUT_OFF * self.video.count:
+            said.append(f"The file speaks of {self.video.count} pictures: it is damaged or cut off.")
         return " ".join(said)
 
     def __repr__(self) -> str:
@@ -143,8 +154,7 @@ class Film(Footage):
         Its columns are point, seconds (that it was seen), distance and claimed (two standard deviations) in metres,
         reference ("board" or "triangulation") and its distance, error (relative), and trusted with the reason.
         """
-        import pandas as pd
-
+        pd = load_pandas()
         rows = []
         for run in bar(self.runs, "judging"):
             recording, trust = run.recording, run.trust()
@@ -153,7 +163,7 @@ class Film(Footage):
             rows.append(
                 {
                     **{"point": recording.source, "seconds": float(recording.elapsed[-1]), "distance": distance},
-                    **{"claimed": 2 * deviation(run)[-1], "reference": reference, "known": known},
+                    **{"claimed": float(self.claimed(run)[-1]), "reference": reference, "known": known},
                     **{"error": abs(distance / known - 1), "trusted": trust.trusted, "why": trust.sentence},
                 }
             )
@@ -161,12 +171,9 @@ class Film(Footage):
 
     def overlay(self, path: PathLike) -> None:
         """Write the film with the distances of its points and their claimed interval drawn in, as MP4."""
-        from percept_obs.film.overlay import write_overlay
+        write_overlay(path, self.video, self.camera, self.runs, [self.claimed(run) for run in self.runs])
 
-        write_overlay(self, path)
-
-
-def deviation(run: Run) -> Array:
-    """Standard deviation of the distance that a filter claims, in metres, shape (K,)."""
-    inverse = run.estimate[:, -1]
-    return np.sqrt(np.maximum(run.covariance[:, -1, -1], 0.0)) / np.maximum(inverse**2, 1e-12)
+    def claimed(self, run: Run) -> Array:
+        """Two standard deviations of the distances of a run, by its filter and by the focal length, in metres."""
+        relative = np.sqrt(np.maximum(run.covariance[:, -1, -1], 0.0)) / np.maximum(run.estimate[:, -1], 1e-12)
+        return np.asarray(2 * np.hypot(relative, self.focal_deviation) * run.distance)

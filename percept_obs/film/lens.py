@@ -14,14 +14,14 @@ from percept_obs.recording.poses import Poses
 FEWEST = 8
 """Corners of the board that a picture shows at least, for a pose."""
 
-FEWEST_PICTURES = 10
-"""Pictures with a pose that a film needs."""
-
 ALIKE = 1.5
 """Ratio of two poses' errors up to which either may be true."""
 
 UNSURE = 0.01
 """Standard deviation of the principal point, over the size of the picture, from which on it is taken as the middle."""
+
+FOLDED = 0.1
+"""Least slope of a lens in the corner of the picture; below it no direction may be seen there."""
 
 MOST_VIEWS = 40
 """Pictures from which the lens is found, as different as there are."""
@@ -60,15 +60,18 @@ def find_lens(corners: Array, places: Array, size: tuple[int, int]) -> Lens:
     pixels = [corners[k][each].astype(np.float32)[:, None] for k, each in zip(views, seen, strict=True)]
     start = np.array([[max(size), 0, (size[0] - 1) / 2], [0, max(size), (size[1] - 1) / 2], [0, 0, 1.0]])
     plain = cv2.CALIB_FIX_K2 | cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST  # more is not told by a small board
-    for fixed in (0, cv2.CALIB_FIX_PRINCIPAL_POINT):
+    middle = cv2.CALIB_FIX_PRINCIPAL_POINT
+    for fixed in (0, middle, middle | cv2.CALIB_FIX_K1):
         flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO | plain | fixed
         error, matrix, lens, _, _, spread, *_ = cv2.calibrateCameraExtended(
             there, pixels, size, start.copy(), np.zeros(5), flags=flags
         )
-        if spread[2:4].max() < UNSURE * max(size):
+        corner = float(np.hypot(*size)) / 2 / matrix[1, 1]
+        if spread[2:4].max() < UNSURE * max(size) and 1 + 3 * lens.ravel()[0] * corner**2 > FOLDED:
             break
     camera = PixelCamera((matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2]), size, lens.ravel()[:4])
-    return Lens(camera, float(spread[1, 0] / matrix[1, 1]), float(error))
+    alike = np.sqrt(np.mean([2 * len(each) for each in there]))  # the errors in one view are no independent ones
+    return Lens(camera, float(alike * spread[1, 0] / matrix[1, 1]), float(error))
 
 
 def _different(corners: Array) -> list[int]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from percept_obs.film.film import Film, deviation
+from percept_obs.compile import Array
+from percept_obs.film.video import Video
+from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.text_table import PathLike
 from percept_obs.tracking.run import Run
 
@@ -22,21 +24,23 @@ MOST = 12
 BLUE, WHITE, INK = (37, 99, 235), (255, 255, 255), (20, 20, 20)
 
 
-def write_overlay(film: Film, path: PathLike) -> None:
-    """Write the film as MP4: a dot at each point, and beside it the distance with two standard deviations."""
+def write_overlay(
+    path: PathLike, video: Video, camera: PixelCamera, runs: Sequence[Run], claimed: Sequence[Array]
+) -> None:
+    """Write the film as MP4: a dot at each point, and beside it the distance and what is claimed, in metres."""
     import av
     from matplotlib import get_data_path
     from PIL import Image, ImageDraw, ImageFont
 
-    width, height = (side // 2 * 2 for side in film.video.size)  # which H.264 needs
+    width, height = (side // 2 * 2 for side in video.size)  # which H.264 needs
     size = max(12, max(width, height) // 55)
     font = ImageFont.truetype(str(Path(get_data_path(), "fonts/ttf/DejaVuSans.ttf")), size)
-    shown = _labels(film, 7 * size)
+    shown = _labels(camera, runs, claimed, 7 * size)
     with av.open(str(path), "w", format="mp4") as file:
         stream: Any = file.add_stream("libx264", rate=30, options={"crf": "20", "preset": "veryfast"})
         stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
         stream.codec_context.time_base = Fraction(1, TICKS)
-        for seconds, shot in film.video.shots("drawing the film"):
+        for seconds, shot in video.shots("drawing the film"):
             picture = Image.fromarray(shot(1.0, "rgb24")[:height, :width])
             draw = ImageDraw.Draw(picture)
             for (u, v), text in shown.get(seconds, ()):
@@ -52,12 +56,14 @@ def write_overlay(film: Film, path: PathLike) -> None:
         file.mux(stream.encode())
 
 
-def _labels(film: Film, apart: float) -> dict[float, list[tuple[Any, str]]]:
+def _labels(
+    camera: PixelCamera, runs: Sequence[Run], claimed: Sequence[Array], apart: float
+) -> dict[float, list[tuple[Any, str]]]:
     """Return pixels and texts by the time of the picture; labels are so many pixels apart, the longest tracks first."""
     found: dict[float, list[tuple[Any, str]]] = {}
-    for run in sorted(film.runs, key=lambda run: -len(run.time)):
-        pixels = film.camera.pixels(run.recording.outputs)
-        for seconds, pixel, text in zip(run.time.tolist(), pixels, _texts(run), strict=True):
+    for run, claim in sorted(zip(runs, claimed, strict=True), key=lambda each: -len(each[1])):
+        pixels = camera.pixels(run.recording.outputs)
+        for seconds, pixel, text in zip(run.time.tolist(), pixels, _texts(run.distance, claim), strict=True):
             there = found.setdefault(seconds, [])
             if np.isfinite(pixel).all():
                 labels = [other for other, said in there if said]
@@ -66,7 +72,7 @@ def _labels(film: Film, apart: float) -> dict[float, list[tuple[Any, str]]]:
     return found
 
 
-def _texts(run: Run) -> Iterator[str]:
+def _texts(distances: Array, claimed: Array) -> Iterator[str]:
     """Yield the distance at each time, once it is claimed to within a half."""
-    for distance, claimed in zip(run.distance, 2 * deviation(run), strict=True):
-        yield f"{distance:.2f} ± {claimed:.2f} m" if 0 < claimed < distance / 2 else ""
+    for distance, claim in zip(distances, claimed, strict=True):
+        yield f"{distance:.2f} ± {claim:.2f} m" if claim < distance / 2 else ""

@@ -32,7 +32,7 @@ def page(film: Film, table: AllObservers | None, video: str, lab: str) -> str:
     judged = f"{len(trusted)} of {len(points)} estimates are trusted."
     if len(trusted):
         judged += (
-            f" They are off by {trusted['error'].median():.1%} in the median. The board's corners are compared with "
+            f" They differ by {trusted['error'].median():.2%} in the median. The board's corners are compared with "
             "the board, other points with the triangulation of the whole film."
         )
     title = html.escape(f"How far things are in {film.source}")

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.film.board import Board
+from percept_obs.film.faults import FEWEST, FEWEST_CORNERS, Faults, find_faults
 from percept_obs.film.film import BOARD, TRIANGULATION, Film
-from percept_obs.film.lens import FEWEST, FEWEST_PICTURES, Seen, find_lens, find_poses
+from percept_obs.film.lens import find_lens, find_poses
 from percept_obs.film.pictures import undistorted
 from percept_obs.film.sighting import SHORTEST_TRACK, Sighting, sight
 from percept_obs.film.triangulation import triangulate
@@ -23,11 +25,20 @@ from percept_obs.recording.track_table import runs
 from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked
 
+SHORTEST_FILM = 1.5
+"""Seconds that a film lasts at least."""
+
 GAP = 0.3
 """Seconds without a pose, or without a corner of the board, after which another part begins."""
 
+JUMP, FASTEST = 20.0, 5.0
+"""Median steps, and metres a second, beyond which the camera cannot have moved: the film was cut there."""
+
 LARGEST_SPREAD = 2.0
 """Pixels by which samples of a point at rest scatter at most."""
+
+SPOILS = ("unknown", "focus", "stabilisation", "board", "lens", "noise")
+"""Keys of the mistakes that are not corrected, and with which no estimate is trusted."""
 
 SURE = 0.1
 """Largest relative standard deviation of a triangulated distance."""
@@ -92,54 +103,85 @@ def read_film(
         raise ValueError("poses are given and no camera; give also camera=PixelCamera(...), in pixels of the film")
     printed = board if isinstance(board, Board) else Board() if board is None else Board.from_json(board)
     sighting = sight(video, printed)
-    seen, findings = None, ()
+    seen, faults, unsure = None, None, 0.0
     if poses is None:
         _refuse_unseen(sighting, printed, video)
-        camera = camera or find_lens(sighting.corners, printed.points, video.size).camera
-        seen = find_poses(sighting.time, sighting.corners, printed.points, camera)
+        places = printed.points
+        given = camera or find_lens(sighting.corners, places, video.size).camera
+        seen = find_poses(sighting.time, sighting.corners, places, given)
+        faults = find_faults(sighting.time, sighting.corners, printed, video.size, given, seen.poses, sighting.width)
+        sighting = replace(sighting, corners=faults.corners, tracked=_at_the_middle(sighting, faults.readout, video))
+        if camera is None:
+            lens = find_lens(sighting.corners, places, video.size)
+            camera, unsure = lens.camera, lens.deviation
+        seen = find_poses(sighting.time, sighting.corners, places, camera)
         poses = seen.poses
     assert camera is not None
     travelled = _path(poses, derivative)
-    recordings = (*_corners(sighting, printed, camera, seen, travelled), *_others(sighting, camera, travelled))
-    if not recordings:
+    doubt = _doubt(faults)
+    found = [*_corners(sighting, printed, camera, travelled)] if seen else []
+    found += _others(sighting, camera, travelled)
+    if not found:
         raise ValueError(
             f"'{video.path}' shows no point for {SHORTEST_TRACK:g} s while the camera's pose is known; move slowly, "
             "with the board in the picture"
         )
-    frames = undistorted(sighting, camera)
     return Film(
-        recordings,
+        tuple(replace(recording, doubt=doubt) for recording in found),
         (BOARD, TRIANGULATION),
-        frames,
+        undistorted(sighting, camera),
         video.path.name,
         video,
         camera,
         travelled,
-        findings,
+        faults.findings if faults else (),
         sighting,
+        unsure,
         printed,
         seen,
     )
 
 
+def _doubt(faults: Faults | None) -> str:
+    """Return why estimates are not to be trusted, if a fault is not corrected."""
+    spoiled = [each.sentence for each in faults.findings if each.key in SPOILS] if faults else []
+    return ", and ".join(spoiled)
+
+
+def _at_the_middle(sighting: Sighting, readout: Array, video: Video) -> Array:
+    """Return the pixels of tracks at the times of their pictures, from those when their row or column was read."""
+    moved = [np.empty((0, 2))]
+    for first, pixels in sighting.tracks:
+        speed = np.gradient(pixels, sighting.time[first : first + len(pixels)], axis=0)
+        late = (pixels / video.size - 0.5) @ readout
+        moved.append(pixels - speed * late[:, None])
+    return np.concatenate(moved)
+
+
 def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
     """Refuse a film in which too few pictures show enough of the board."""
     count = np.isfinite(sighting.corners).all(axis=2).sum(axis=1)
-    enough = int((count >= FEWEST).sum())
+    enough = int((count >= FEWEST_CORNERS).sum())
     if sighting.twice.mean() > 0.1:
         raise ValueError(f"'{video.path}' shows two boards with the same markers; leave one in the picture")
-    if enough < FEWEST_PICTURES:
+    if np.ptp(sighting.time) < SHORTEST_FILM or len(count) < FEWEST:
         raise ValueError(
-            f"{enough} of {len(count)} pictures of '{video.path}' show {FEWEST} corners of the board, {board.name}, "
-            f"and {FEWEST_PICTURES} are needed. Is it this board (board=...)? It must lie flat, be sharp, and "
-            "fill a third of the picture's width. A film without a board needs poses=... and camera=..., as read_colmap "
-            "finds them"
+            f"'{video.path}' is too short: {len(count)} pictures in {np.ptp(sighting.time):.1f} s; film for 10 to 20 s"
+        )
+    if enough < FEWEST:
+        raise ValueError(
+            f"{enough} of {len(count)} pictures of '{video.path}' show {FEWEST_CORNERS} corners of the board, "
+            f"{board.name}, and {FEWEST} are needed. Is it this board (board=...)? It must lie flat, be sharp, and "
+            "fill a third of the picture's width. Without a board, give poses=... and camera=..., as of read_colmap"
         )
 
 
 def _path(poses: Poses, derivative: Derivative) -> CameraPath:
     """Return smoothed poses and velocities of each part without a gap that is long enough for the derivative."""
-    parts = [part for part in runs(poses.time, np.arange(len(poses.time)), GAP) if len(part) >= derivative.fewest]
+    far = np.linalg.norm(np.diff(poses.position, axis=0), axis=1)
+    jumps = 1 + np.flatnonzero(far > np.maximum(JUMP * np.median(far), FASTEST * np.diff(poses.time)))  # as at a cut
+    whole = np.split(np.arange(len(poses.time)), jumps)
+    parts = [part for each in whole for part in runs(poses.time, each, GAP) if len(part) >= derivative.fewest]
     if not parts:
         raise ValueError(
             f"the poses have gaps of more than {GAP:g} s everywhere; keep the board in the picture while you move"
@@ -153,12 +195,8 @@ def _path(poses: Poses, derivative: Derivative) -> CameraPath:
     )
 
 
-def _corners(
-    sighting: Sighting, board: Board, camera: PixelCamera, seen: Seen | None, path: CameraPath
-) -> Iterator[Recording]:
+def _corners(sighting: Sighting, board: Board, camera: PixelCamera, path: CameraPath) -> Iterator[Recording]:
     """Yield recordings of the board's corners, with their truth."""
-    if seen is None:
-        return
     for number, place in enumerate(board.points):
         rows = np.flatnonzero(np.isfinite(sighting.corners[:, number]).all(axis=1))
         yield from _recordings(

@@ -8,6 +8,7 @@ import json
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from percept_obs.film.board import Board
 from percept_obs.film.video import Video
 from percept_obs.validation import write_whole
 
-VERSION = 1
+VERSION = 4
 """Number of the format of files in the cache."""
 
 WIDEST = 1280
@@ -89,7 +90,7 @@ def sight(video: Video, board: Board) -> Sighting:
     try:
         with np.load(kept) as parts:
             return Sighting(**parts)
-    except (OSError, ValueError, TypeError, EOFError):  # not there, or not whole
+    except (OSError, ValueError, TypeError, EOFError, BadZipFile):  # not there, or not whole
         sighting = _look(video, board)
     packed = io.BytesIO()
     np.savez(packed, **{name: values for name, values in vars(sighting).items()})

@@ -12,6 +12,7 @@ import sympy as sp
 
 from percept_obs.papers.entries import Entry, Known, Verdict
 from percept_obs.papers.mathml import shown
+from percept_obs.validation import load_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -85,8 +86,7 @@ class Ledger:
     @property
     def table(self) -> pd.DataFrame:
         """A row for each entry, with the verdict that is recorded; `percept-obs check` computes all of them again."""
-        import pandas as pd  # takes as long to load as an equation to judge
-
+        pd = load_pandas()  # takes as long to load as an equation to judge
         rows = [(e.place, e.page, e.says, e.printed, str(e.expected), str(e.known), e.note) for e in self.entries]
         return pd.DataFrame(rows, columns=COLUMNS)
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.recording.text_table import PathLike
-from percept_obs.validation import checked
+from percept_obs.validation import checked, needed
 
 __all__ = ["read_mount"]
 
@@ -97,6 +97,7 @@ def read_mount(path: PathLike, camera: str | None = None) -> tuple[Array, Array]
 
 def _camera(path: PathLike, camera: str | None) -> tuple[str, dict[str, Any]]:
     """Name of the file, and what it says of a camera, by names in small letters."""
+    needed("data", "yaml")
     import yaml  # type: ignore[import-untyped, unused-ignore]
 
     file = os.fspath(path)

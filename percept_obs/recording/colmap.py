@@ -21,7 +21,7 @@ from percept_obs.recording.poses import USUAL, Poses
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
 from percept_obs.recording.track_table import refuse_parts, tracks_of_points
 from percept_obs.system.surfaces import pinhole
-from percept_obs.validation import checked, positive
+from percept_obs.validation import checked, load_pandas, positive
 
 MODELS = MappingProxyType(
     {
@@ -82,8 +82,7 @@ class ColmapModel:
 
         The noise is in pixels, if it is known; gap and shortest are those of `Recording.from_csv`.
         """
-        import pandas as pd
-
+        pd = load_pandas()
         refuse_parts(gap, shortest)
         path, surface = self.poses.path(derivative), pinhole()
         variance = None if pixel_sigma is None else self.camera.variance(pixel_sigma)

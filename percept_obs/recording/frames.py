@@ -26,7 +26,7 @@ MOST_BYTES = 20_000_000
 @checked
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Frames of a film, each shown from its time until the next one's.
+    """Frames of a film, each shown while it is the nearest in time.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ import numpy as np
 
 from percept_obs.recording.poses import Poses
 from percept_obs.recording.text_table import NANOSECONDS, SECONDS, Clock, PathLike, read_table
-from percept_obs.validation import checked, write_whole
+from percept_obs.validation import checked, load_pandas, write_whole
 
 TUM = ("timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw")
 TUM_EXAMPLE = "1305031102.1758 1.3405 0.6266 1.6575 0.6574 0.6126 -0.2949 -0.3248"
@@ -142,8 +142,7 @@ def write_tum(path: PathLike, poses: Poses, clock: Clock = SECONDS) -> None:
     ...     print((pathlib.Path(folder) / "poses.txt").read_text().splitlines()[0])
     #timestamp tx ty tz qx qy qz qw
     """
-    import pandas as pd
-
+    pd = load_pandas()
     cells = (clock.readings(poses.time), *poses.position.T, *poses.orientation.T)
     table = pd.DataFrame(dict(zip(TUM, cells, strict=True)))
     write_whole(Path(path), f"#{table.to_csv(sep=' ', index=False, lineterminator=chr(10))}".encode())

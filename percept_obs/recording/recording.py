@@ -20,7 +20,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View
-from percept_obs.validation import checked
+from percept_obs.validation import checked, load_pandas
 
 USUAL_SPEED = 0.6
 """Speed in units of length a second that default gains are made for, about that of Ma's examples."""
@@ -298,8 +298,7 @@ class Recording:
 
         Of several points the outputs and distances have a number as well, y1_0.
         """
-        import pandas as pd
-
+        pd = load_pandas()
         points = [f"_{k}" for k in range(self.view.point_shape[0])] if self.view.point_shape else [""]
         parts = [(["time"], self.time), ([f"{name}{k}" for k in points for name in self.names], self.outputs)]
         if self.truth is not None:

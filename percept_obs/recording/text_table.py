@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.validation import checked
+from percept_obs.validation import checked, load_pandas
 
 PathLike = str | os.PathLike[str]
 
@@ -142,8 +142,7 @@ def read_table(
     Names are those of the columns of a file without a header, which may have further ones; the separator is a regular
     expression, and the example a first line for messages.  The columns that are to be numbers are read fast.
     """
-    import pandas as pd
-
+    pd = load_pandas()
     file = os.fspath(path)
     if not Path(path).is_file():
         raise FileNotFoundError(f"the path names '{file}', where there is no file; name a text file with a table")
@@ -181,8 +180,7 @@ def read_table(
 
 def _clean(file: str, skipped: int, numbers: set[str], layout: dict[str, Any]) -> dict[str, Any] | None:
     """Columns of a table after some lines, if all its cells are as they should be."""
-    import pandas as pd
-
+    pd = load_pandas()
     gaps = {name: ["", "nan", "NaN"] for name in numbers}
     kinds: Any = defaultdict(lambda: str, dict.fromkeys(numbers, float))
     try:

@@ -10,7 +10,7 @@ import numpy as np
 from percept_obs.recording import Recording
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
-from percept_obs.validation import checked, write_whole
+from percept_obs.validation import checked, load_pandas, write_whole
 
 
 @checked
@@ -67,8 +67,7 @@ def write_tracks(
             f"the recordings have {', '.join(first.names)} of the {first.view.name}; pixels need y1 and y2 of the "
             "pinhole: leave camera out"
         )
-    import pandas as pd
-
+    pd = load_pandas()
     known = any(each.truth is not None for each in recordings)
     tables = []
     for number, each in enumerate(recordings):

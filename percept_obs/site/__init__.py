@@ -15,7 +15,7 @@ from typing import Any
 
 from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED, Ledger
-from percept_obs.site import front_ends
+from percept_obs.site import front_ends, lite, slides
 from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
 from percept_obs.site.front import first_lab, front
 from percept_obs.site.named import named
@@ -31,13 +31,13 @@ from percept_obs.site.pages import Pages, contents, ledger_pages, reference
 
 __all__ = ["NEEDS", "SiteFault", "build"]
 
-NEEDS = ("sphinx", "myst_nb", "furo", "latex2mathml", "nbclient")
+NEEDS = ("sphinx", "myst_nb", "furo", "sphinx_revealjs", "latex2mathml", "nbclient")
 """Modules of the extra "site"."""
 
 TEXTS = resources.files("percept_obs.site") / "texts"
 SCRIPTS = "".join(f'<script defer src="../_static/{name}"></script>' for name in ("labs.js", "alone.js"))
 
-SETTINGS = {
+SETTINGS: dict[str, Any] = {
     "project": "percept_obs",
     "release": metadata.version("percept_obs"),
     "language": "en",
@@ -70,6 +70,7 @@ def build(
     tell: Callable[[str], object] = print,
     exam: bool = False,
     address: str = "",
+    python: bool = False,
 ) -> None:
     """Build the site.
 
@@ -91,17 +92,20 @@ def build(
         Where the site will stand, ``"https://example.org/course/"``; with it pages say their own address, and there is
         a list of them all for search engines.  If it ends with a version, as ``".../course/1.2/"``, pages lead to the
         folder above, where the others stand.
+    python : bool
+        Whether JupyterLite stands beside the pages, with the notebooks and a Python that runs in the reader's browser.
 
     Raises
     ------
     SiteFault
-        If a notebook does not run, or a page has a fault such as a link that leads nowhere.
+        If a notebook does not run, a page has a fault such as a link that leads nowhere, or JupyterLite cannot be
+        built.
     """
     address = address and address.rstrip("/") + "/"
     with tempfile.TemporaryDirectory() as folder:
-        source = Path(folder)
+        source, shown = Path(folder) / "site", Path(folder) / "slides"
         lab = first_lab()
-        _notebooks(source, notebooks, parallel, lab, tell)
+        _notebooks(source, shown, notebooks, parallel, lab, tell)
         tell("judging the papers' equations")
         for path, text in [
             *ledger_pages(ledgers),
@@ -112,21 +116,31 @@ def build(
             _write(source / path, text)
         tell("writing the pages")
         (source / "_static" / CARD).write_bytes(card())
-        settings = {"html_baseurl": address, "html_context": {"versions": above_versions(address)}}
+        with resources.as_file(TEXTS / "pictures") as pictures:
+            shutil.copytree(pictures, source / "pictures")
+        context = {"versions": above_versions(address), "python": lite.PLACES if python else {}}
+        settings = {"html_baseurl": address, "html_context": context}
         _generate(source, target, {"myst_substitutions": named(notebooks, ledgers, exam), **settings})
+        slides.prepare(shown, (TEXTS / "slides.css").read_text("utf-8"))
+        extensions = [*SETTINGS["extensions"], "sphinx_revealjs"]
+        _generate(shown, target / "slides", {**slides.SETTINGS, "extensions": extensions}, "revealjs")
     if address:
         write_sitemap(target, address)
+    if python:
+        tell("building JupyterLite")
+        lite.write_lite(target, notebooks)
     tell(f"wrote {target / 'index.html'}")
 
 
 def _notebooks(
     source: Path,
+    shown: Path,
     notebooks: Mapping[str, Mapping[str, Any]],
     parallel: int,
     lab: Mapping[str, Any],
     tell: Callable[[str], object],
 ) -> None:
-    """Run the notebooks, and write them with the scripts of their labs and of the first page's."""
+    """Run the notebooks, and write them and their slides, with the scripts of their labs and of the first page's."""
     import nbformat
 
     states: dict[bytes, Mapping[str, Any]] = {lab["texts"]: lab}
@@ -136,9 +150,11 @@ def _notebooks(
     for name, notebook in run_all(notebooks, parallel, missing):
         tell(f"{'wrote' if name in missing else 'ran'} {name}")
         states |= {state["texts"]: state for state in labs_of(notebook).values()}
+        _write(shown / name, nbformat.writes(without_widgets(slides.slides_of(notebook), SCRIPTS)))
         _write(source / "notebooks" / name, nbformat.writes(without_widgets(notebook, SCRIPTS)))
     stems = [name.removesuffix(".ipynb") for name in notebooks]
     _write(source / "notebooks" / "index.md", contents("The course", "Read the notebooks in this order.", stems))
+    _write(shown / "index.md", contents("Slides", "The notebooks as slides; the arrow keys turn them.", stems))
     _write(source / "_static" / "labs.js", library_of(states.values()))
     shutil.copy(STARTER, source / "_static")
 
@@ -146,7 +162,7 @@ def _notebooks(
 def _texts(exam: bool) -> Pages:
     """Yield the texts written by hand, and the table of front ends."""
     yield "front_ends.md", front_ends.page()
-    for text in (each for each in TEXTS.iterdir() if exam or each.name != "exam.md"):
+    for text in (each for each in TEXTS.iterdir() if each.is_file() and (exam or each.name != "exam.md")):
         folder = {".css": "_static/", ".html": "_templates/"}.get(Path(text.name).suffix, "")
         yield folder + text.name, text.read_text("utf-8")
 
@@ -156,11 +172,13 @@ def _write(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
-def _generate(source: Path, target: Path, names: Mapping[str, Any]) -> None:
+def _generate(source: Path, target: Path, names: Mapping[str, Any], builder: str = "html") -> None:
     from sphinx.application import Sphinx
+    from sphinx.util.docutils import docutils_namespace
 
     faults, settings = io.StringIO(), {**SETTINGS, **names}
-    app = Sphinx(source, None, target, source / ".doctrees", "html", settings, None, faults, freshenv=True)
-    app.build(force_all=True)
+    with docutils_namespace():
+        app = Sphinx(source, None, target, source / ".doctrees", builder, settings, None, faults, freshenv=True)
+        app.build(force_all=True)
     if faults.getvalue():
         raise SiteFault(f"the site has faults:\n{faults.getvalue()}")

@@ -57,12 +57,11 @@ def above_versions(address: str) -> str:
 
 def write_sitemap(target: Path, address: str) -> None:
     """List all pages of a site for search engines."""
-    pages = sorted(
-        path.relative_to(target).as_posix() for path in target.rglob("*.html") if "_static" not in path.parts
-    )
-    found = "".join(f"<url><loc>{escape(address + page)}</loc></url>\n" for page in pages)
+    found = (path.relative_to(target) for path in target.rglob("*.html"))
+    pages = sorted(path.as_posix() for path in found if path.parts[0] not in ("_static", "lite"))
+    entries = "".join(f"<url><loc>{escape(address + page)}</loc></url>\n" for page in pages)
     head = '<?xml version="1.0" encoding="utf-8"?>\n<urlset xmlns="http://www.sitemaps.org/schemas/sitemap/0.9">\n'
-    (target / "sitemap.xml").write_text(f"{head}{found}</urlset>\n", encoding="utf-8")
+    (target / "sitemap.xml").write_text(f"{head}{entries}</urlset>\n", encoding="utf-8")
 
 
 def card() -> bytes:

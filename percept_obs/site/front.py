@@ -16,7 +16,7 @@ from percept_obs.site.pages import slug
 STEPS = {
     "See it, derive it": ("00", "01", "08"),
     "Observe": ("02", "03", "04"),
-    "Go further": ("05", "06", "07", "10"),
+    "Go further": ("05", "06", "07", "10", "15", "16"),
     "Doubt": ("09", "11", "12", "13", "14"),
 }
 """Steps of the course, each with its notebooks."""
@@ -25,15 +25,23 @@ QUESTION = "You drive straight at a standing stone. Does its image tell how far 
 ANSWERS = ("Yes, at once", "Yes, but slowly", "No")
 """Answers of the lab's question "straight", in its order."""
 
+LEARN = {
+    "tour.html": "A tour of the package",
+    "gallery.html": "Gallery",
+    "own.html": "Your own recording",
+}
 TEACH = {
-    "guide.html#two-lesson-plans": "Two lesson plans: 45 and 90 minutes",
+    "guide.html#three-lesson-plans": "Three lesson plans: 45 and 90 minutes, and one with films",
     "guide.html#what-students-often-get-wrong": "What students often get wrong",
     "guide.html": "The teacher's guide",
 }
 LOOK_UP = {
     "ledger/index.html": "The papers, equation by equation",
-    "labs.html": "The labs",
+    "observers.html": "The observers",
+    "use_labs.html": "How to use the labs",
+    "labs.html": "What the labs compute",
     "reference/index.html": "Reference: all public names",
+    "sources.html": "Sources, data, and other packages",
 }
 
 NAMES = {
@@ -55,6 +63,10 @@ document.querySelectorAll(".front-question button").forEach((button, k) => {
 });
 </script>"""
 
+PAGES = """notebooks/index tour gallery own guide use_labs labs front_ends observers ledger/index reference/index
+sources review speed"""
+"""Pages in the order of the contents."""
+
 HEADER = "---\nhide-toc: true\n---\n\n# One picture never tells how far. Move, and it does."
 
 
@@ -75,14 +87,13 @@ def front(state: Mapping[str, Any], notebooks: Mapping[str, Mapping[str, Any]], 
     ledgers : mapping of str to Ledger
         The site's papers.
     """
-    pages = ["notebooks/index", "guide", "labs", "front_ends", "ledger/index", "reference/index", "review", "speed"]
-    tree = "\n".join(["```{toctree}", ":hidden:", ":maxdepth: 2", "", *pages, "```"])
+    tree = "\n".join(["```{toctree}", ":hidden:", ":maxdepth: 2", "", *PAGES.split(), "```"])
     scripts = "".join(f'<script defer src="_static/{name}"></script>' for name in ("labs.js", "alone.js"))
     answers = "".join(f'<button type="button">{answer}</button> ' for answer in ANSWERS)
     doors = [
         scripts + place_of(state),
         f'<p class="front-question"><strong>{QUESTION}</strong><br>{answers}</p>{ASKED}',
-        f"<h2>Learn</h2>{_course(notebooks)}",
+        f"<h2>Learn</h2>{_course(notebooks)}{_links(LEARN)}",
         f'<div class="front-doors"><section><h2>Teach</h2>{_links(TEACH)}</section>',
         f"<section><h2>Look things up</h2>{_verdicts(ledgers)}{_links(LOOK_UP)}</section></div>",
         '<h2>Install</h2><pre>python3 -m pip install -e ".[fast,lab]"\npercept-obs lab</pre>',

@@ -14,7 +14,7 @@ from percept_obs.structure.pixels import CHWA_CAMERA, SignalToNoise
 from percept_obs.structure.scenarios import chwa2019_experiment
 from percept_obs.structure.simulation import EXACT_DEPTH
 from percept_obs.tracking.following import track
-from percept_obs.validation import checked
+from percept_obs.validation import checked, load_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -117,8 +117,7 @@ def scale_spread(
     >>> found.loc["Kalman filter, linear view", ["mean", "true"]].astype(float).round(1).tolist()
     [10.5, 10.4]
     """
-    import pandas as pd
-
+    pd = load_pandas()
     setup = chwa2019_experiment("IV.A")
     rows = []
     for ratio in decibels:

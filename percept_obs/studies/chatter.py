@@ -13,7 +13,7 @@ from percept_obs.compile.integrator import step_grid
 from percept_obs.observers.base import Observer, with_point
 from percept_obs.recording import Recording, Scenario
 from percept_obs.tracking.following import track
-from percept_obs.validation import checked
+from percept_obs.validation import checked, load_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -75,8 +75,7 @@ def chatter(
     >>> table["step"].round(4).tolist()
     [0.01, 0.005]
     """
-    import pandas as pd
-
+    pd = load_pandas()
     if not len(steps):
         raise ValueError("there are no steps to compare; give some, in seconds")
     if not 0 <= after < recording.time[-1] - recording.time[0]:

@@ -19,7 +19,7 @@ from percept_obs.system.signal import from_the_start, slack_of
 from percept_obs.tracking.following import AnyObserver, StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import bar, checked
+from percept_obs.validation import bar, checked, load_pandas
 
 __all__ = ["best_setting", "compare", "relative_distance_errors", "summary"]
 
@@ -87,8 +87,7 @@ def compare(
     >>> summary(table)["failed"].tolist()
     [0, 0]
     """
-    import pandas as pd
-
+    pd = load_pandas()
     if not isinstance(observers, Mapping):
         names = [observer.name for observer in observers]
         if len(set(names)) != len(names):
@@ -159,8 +158,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
     >>> summary(table)[["runs", "failed", "diverged"]].values.tolist()
     [[2, 0, 0]]
     """
-    import pandas as pd
-
+    pd = load_pandas()
     if missing := sorted({"observer", "settling_time", "resets", "diverged_at", *MEASURES} - set(table)):
         raise ValueError(f"the table has no columns {', '.join(missing)}; give one from compare()")
     observers = table.groupby("observer", sort=False)
@@ -180,8 +178,7 @@ def summary(table: pd.DataFrame) -> pd.DataFrame:
 @checked
 def described(found: pd.DataFrame) -> str:
     """Format a `summary` as text: counts, and medians with their quantiles."""
-    import pandas as pd
-
+    pd = load_pandas()
     columns = {name: found[name].map("{:.0f}".format) for name in ("runs", "failed", "reset", "diverged")}
     for name in MEASURES[:-1]:
         ends = zip(found[name], found[name + "_low"], found[name + "_high"], strict=True)

@@ -22,7 +22,7 @@ from percept_obs.system.forms import PartitionedSystem
 from percept_obs.tracking.following import DoesNotFit, StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import bar, checked
+from percept_obs.validation import bar, checked, load_pandas
 
 __all__ = ["Case", "efficiencies"]
 
@@ -116,8 +116,7 @@ def efficiencies(
     >>> bool(0.5 < table["ratio"][0] < 2)
     True
     """
-    import pandas as pd
-
+    pd = load_pandas()
     if not cases:
         raise ValueError("there are no cases; give at least one, by its label")
     tried = dict({make: make.candidates for make in OBSERVERS} if candidates is None else candidates)

@@ -22,7 +22,7 @@ from percept_obs.recording import Recording
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
-from percept_obs.validation import bar, checked, positive
+from percept_obs.validation import bar, checked, load_pandas, positive
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -361,7 +361,7 @@ def comparison(
     >>> comparison({"true": "true"}, starts(5), duration=6.0)["arrived"].tolist()
     [1.0]
     """
-    import pandas as pd
+    pd = load_pandas()
     from scipy.stats import binomtest, quantile_test
 
     rows = {}

@@ -64,7 +64,7 @@ def sweep(path: str | os.PathLike[str], client: Any = None) -> Any:
     >>> from tempfile import mkdtemp
     >>> file = Path(mkdtemp(), "mine.toml")
     >>> lines = ['scenario = "planar"', 'observer = "identifier_based"', 'store = "mine.zarr"', "seeds = 2"]
-    >>> file.write_text(os.linesep.join(lines)) and dict(sweep(file).sizes)
+    >>> file.write_bytes(os.linesep.join(lines).encode()) and dict(sweep(file).sizes)
     {'seed': 2}
     """
     refuse_kind("sweep", "path", path, str | os.PathLike)

@@ -22,7 +22,7 @@ from percept_obs.tracking.following import DoesNotFit, StepTooLong, require_matc
 from percept_obs.tracking.function import FunctionObserver
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import bar, checked
+from percept_obs.validation import bar, checked, load_pandas
 
 __all__ = ["choose_and_report", "side_by_side"]
 
@@ -119,8 +119,7 @@ def choose_and_report(
     >>> side_by_side(table).loc["identifier-based", "diverged"]
     '0'
     """
-    import pandas as pd
-
+    pd = load_pandas()
     if not len(choosing) or not len(reporting):
         raise ValueError(f"{len(choosing)} recordings to choose on, {len(reporting)} to report on: both need some")
     for recording in (*choosing, *reporting):
@@ -279,8 +278,6 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
     >>> side_by_side(choose_and_report(seen[:1], seen[1:], form, track, {ibo: [{}]}, after=[1.0])).columns.tolist()
     ['truth 1 s', 'usable after', 'behind', 'reset', 'diverged', 'cost', 'remark']
     """
-    import pandas as pd
-
     blind = table["trusted"].notna().any()
 
     def share(value: float) -> str:
@@ -316,4 +313,4 @@ def side_by_side(table: pd.DataFrame) -> pd.DataFrame:
         return found | {"remark": f"cannot: {first.refusal}" if first.refusal else remark}
 
     lines = {label: line(rows) for label, rows in table.groupby("observer", sort=False)}
-    return pd.DataFrame.from_dict(lines, orient="index")
+    return load_pandas().DataFrame.from_dict(lines, orient="index")

@@ -113,10 +113,10 @@ class Trust:
 
     The kind is "agrees" (with what the samples tell), "differs", "wide" (the observer claims more than the tolerance),
     "contradicted" (longer windows tell something else, so that the motion is not as it is known), "drifting" (the scale
-    of the motion drifts), "doubted" (the recording has a doubt), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the estimate is
-    infinitely far away or behind the camera) or "no estimate".  The difference is the estimate's relative
-    distance to the information's, and NaN where that is vague or contradicted; `claimed` is the relative standard
-    deviation that the observer claims.
+    of the motion drifts), "doubted" (the recording has a doubt), "vague" (they tell too little), "hidden" (they tell
+    nothing), "nowhere" (the estimate is infinitely far away or behind the camera) or "no estimate".  The difference is
+    the estimate's relative distance to the information's, and NaN where that is vague or contradicted; `claimed` is the
+    relative standard deviation that the observer claims.
     """
 
     kind: str

@@ -7,7 +7,6 @@ import reprlib
 from collections.abc import Callable, Iterator
 from dataclasses import is_dataclass
 from functools import cache, wraps
-from importlib import import_module
 from numbers import Real
 from types import FunctionType, MappingProxyType, NoneType
 from typing import Any, TypeVar, get_type_hints
@@ -15,13 +14,14 @@ from typing import Any, TypeVar, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
+from percept_obs.validation.environment import load_pandas
 from percept_obs.validation.kinds import FLOAT, Kind, are_numbers, is_real, kind_of, with_article
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 
 PACKAGE = __name__.partition(".")[0]
 
-LATER = MappingProxyType({"pd": "pandas"})
+LATER = MappingProxyType({"pd": load_pandas})
 """Modules that annotations name, loaded when a function that needs them is called."""
 
 
@@ -69,7 +69,7 @@ def _guarded(function: Any, name: str, annotated: Any) -> Any:
     def expected() -> tuple[inspect.Signature, dict[str, Kind], bool]:
         """Signature and kinds, read at the first call, for annotations may name what is defined later."""
         signature = inspect.signature(function)
-        later = {name: import_module(module) for name, module in LATER.items() if f"{name}." in str(signature)}
+        later = {name: load() for name, load in LATER.items() if f"{name}." in str(signature)}
         hints = get_type_hints(annotated, localns=later, include_extras=True)
         kinds = {key: kind_of(hint) for key, hint in hints.items() if key in signature.parameters}
         return signature, kinds, all(kind.by_type for kind in kinds.values())

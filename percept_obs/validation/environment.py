@@ -18,8 +18,16 @@ def needed(extra: str, *modules: str) -> None:
     missing = [module for module in modules if find_spec(module) is None]
     if missing:
         raise ModuleNotFoundError(
-            f"{', '.join(missing)} is missing; get it with: python -m pip install 'percept-obs[{extra}]'"
+            f'{", ".join(missing)} is missing; get it with: python -m pip install "percept-obs[{extra}]"'
         )
+
+
+def load_pandas() -> Any:
+    """Return the module pandas, which makes and reads tables; ModuleNotFoundError without the extra "data"."""
+    needed("data", "pandas")
+    import pandas
+
+    return pandas
 
 
 def workers() -> int:

@@ -42,8 +42,8 @@ SOON = 34
 """Milliseconds in which nearly every picture is to follow its event."""
 
 BUSY = f"import time\nend = time.monotonic() + {SECONDS + 1}\nwhile time.monotonic() < end:\n    pass"
-DRAG = Path(__file__).with_name("lab_drag.js").read_text()
-REFERENCE = Path(__file__).with_name("reference.js").read_text()
+DRAG = Path(__file__).with_name("lab_drag.js").read_text("utf-8")
+REFERENCE = Path(__file__).with_name("reference.js").read_text("utf-8")
 RESET = "() => [...window.perceptObsLabs][0].reset()"
 ALL_OF_ITS_TIME = """() => {
     const [lab] = window.perceptObsLabs;

@@ -1,7 +1,6 @@
 """Systems of the desk: of a motion and a surface, or from a student's name."""
 
 import hashlib
-import unicodedata
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -9,6 +8,7 @@ from typing import Any
 
 import sympy as sp
 
+from percept_obs.exercises.individual import same_name
 from percept_obs.labs.shared.surfaces import SURFACES
 from percept_obs.observers import Observer, de_luca, identifier_based, spica
 from percept_obs.system.motion import Motion, affine, rigid
@@ -44,8 +44,7 @@ def system_of_student(student: str) -> tuple[PerspectiveSystem, tuple[str, ...]]
     the motion are zero, so that neighbours have different and shorter formulas; b3 never is, for without it the
     distance would drop out of a moving image.
     """
-    name = unicodedata.normalize("NFKC", student).strip().casefold()
-    drawn = _Draw(int.from_bytes(hashlib.sha256(name.encode()).digest(), "big"))
+    drawn = _Draw(int.from_bytes(hashlib.sha256(same_name(student).encode()).digest(), "big"))
     surface = drawn.one_of(("pinhole", "chained"))  # the others are long by hand
     system = PerspectiveSystem(
         _affine(drawn) if drawn.one_of([True, True, False]) else _rigid(drawn), SURFACES[surface]()

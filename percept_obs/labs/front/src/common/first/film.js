@@ -4,6 +4,8 @@
 import { sampleAt } from "../model/tables.js";
 
 const KEPT = 24;
+/** Frames that are decoded before they are due. */
+const AHEAD = 4;
 /** Opacity, with which all marks and letters stand out on it. */
 const SEEN = 0.65;
 
@@ -17,12 +19,13 @@ export class Film {
     this.last = "";
   }
 
-  /** Draw the frame of a film's time in its box, or the last one while it is being decoded. */
+  /** Draw the frame nearest to a film's time in its box, or the last one while it is being decoded. */
   draw(pen, which, time, [left, right, lower, upper]) {
     const { time: times, images } = this.films[which];
-    const frame = sampleAt(times, Math.max(time, times[0]));
+    const before = sampleAt(times, Math.max(time, times[0]));
+    const frame = times[before + 1] - time < time - times[before] ? before + 1 : before;
     const key = `${which} ${frame}`;
-    this.prepare(key, images[frame]);
+    for (let k = frame; k < Math.min(frame + AHEAD, images.length); k += 1) this.prepare(`${which} ${k}`, images[k]);
     if (this.ready.get(key)) this.last = key;
     const image = this.last.startsWith(`${which} `) ? this.ready.get(this.last) : null;
     if (!image) return;

@@ -9,6 +9,8 @@ import { sampleAt } from "../../common/model/tables.js";
 const SAME = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
 /** How many standing things there are, and their distances ahead in metres. */
 const [THINGS, NEAREST, FARTHEST] = [120, 4, 48];
+/** Most ways to the world that are remembered: a picture asks for hundreds, and the next one for the same. */
+const MOST = 5000;
 /** Steps of a sequence that fills a cube evenly. */
 const STEPS = [0.8191725, 0.6710436, 0.5497005];
 
@@ -50,22 +52,29 @@ function back(map) {
 export class Standing {
   at = 0;
   pose = SAME;
+  known = { motion: null, /** @type {Map<number, Affine>} */ ways: new Map() };
 
   /** Let the camera stand at time 0 where the world begins. */
   begin() {
     this.at = 0;
     this.pose = SAME;
+    this.known.motion = null;
   }
 
   /** Keep the present place of the camera, whatever its motion will be. */
   keep(motion, time) {
     this.pose = this.toWorld(motion, time);
     this.at = time;
+    this.known.motion = null;
   }
 
   /** From what the camera sees at a time to the world; a motion that is not rigid has the camera for its world. */
   toWorld(motion, time) {
-    return isRigid(motion.A) ? after(this.pose, flow(motion, this.at - time)) : SAME;
+    if (motion !== this.known.motion || this.known.ways.size > MOST) this.known = { motion, ways: new Map() };
+    const { ways } = this.known;
+    const way = ways.get(time) ?? (isRigid(motion.A) ? after(this.pose, flow(motion, this.at - time)) : SAME);
+    ways.set(time, way);
+    return way;
   }
 
   toCamera(motion, time) {

@@ -1,0 +1,296 @@
+"""A class's notebooks in one table: read, compared with what was given, and marked; nothing that a student wrote runs.
+
+An answer is the literal in its cell: text, numbers, or a list or dictionary of them, found in the source.
+"""
+
+from __future__ import annotations
+
+import ast
+import csv
+import json
+import re
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from percept_obs.exercises.attempts import WRITTEN
+from percept_obs.exercises.copies import students_copy
+from percept_obs.exercises.individual import OURS, individual, same_name
+from percept_obs.exercises.marking import LONGEST, answered, lesson, marks, programs, run
+from percept_obs.exercises.models import notebooks
+from percept_obs.validation import bar
+from percept_obs.validation.kinds import is_real
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+LARGEST = 50_000_000
+"""Bytes of a notebook."""
+
+POINTS = " (points)"
+"""End of the names of columns that a teacher fills in."""
+
+COUNTS = ("attempts", "hints", "minutes")
+
+
+@dataclass(frozen=True)
+class Student:
+    """Row of a roster, or a folder that is in none."""
+
+    name: str
+    folder: Path | None
+    due: datetime | None = None
+    listed: bool = True
+
+
+@dataclass(frozen=True)
+class Job:
+    """Notebook that a student handed in: whose copy it is, cells altered where they should not be, answers, columns."""
+
+    copy: str
+    altered: list[str]
+    notebook: Mapping[str, Any]
+    answers: dict[str, Any]
+    columns: dict[str, Any]
+
+
+def collect(folder: Path, roster: Path | None = None, run_code: bool = False) -> pd.DataFrame:
+    """Return a table of a class: a row a student, with marks, attempts, texts, and columns that a teacher fills in.
+
+    Parameters
+    ----------
+    folder : Path
+        Holds a folder a student, with the notebooks that were handed in.
+    roster : Path, optional
+        CSV file with the column student; and, if need be, folder, and due, such as 2026-03-01T12:00.
+    run_code : bool
+        Whether the cell of an answer that is no literal is run, in a process of its own with limits.
+
+    Raises
+    ------
+    ValueError
+        If there is no folder of a student, or the roster cannot be read.
+
+    See Also
+    --------
+    individual : Makes the copies.
+
+    Examples
+    --------
+    >>> collect(Path("submitted"), Path("roster.csv"))  # doctest: +SKIP
+    """
+    import pandas as pd
+
+    rows, jobs = [], []
+    for student in students(folder, roster):
+        row: dict[str, Any] = {"student": student.name, "handed in": "missing", "copy": "", "altered": "", "faults": ""}
+        mine: dict[str, Job] = {}
+        files = student.folder.rglob("*.ipynb") if student.folder else ()
+        for file in sorted((f for f in files if ".ipynb_checkpoints" not in f.parts), key=lambda f: f.lstat().st_mtime):
+            try:
+                name, cells, said, shown = read(file)
+                job = compared(student.name, name, cells, said, run_code)
+            except (OSError, ValueError, RecursionError, MemoryError) as error:
+                row["faults"] += f"{file.name}: {str(error) or type(error).__name__}; "
+                continue
+            for task, *counts in WRITTEN.findall(shown):
+                for what, count in zip(COUNTS, map(int, counts), strict=True):
+                    if (label := f"{name[:2]} {task} {what}") in job.columns:
+                        job.columns[label] = max(job.columns[label] or 0, count)
+            late = (file.lstat().st_mtime - student.due.timestamp()) / 3600 if student.due else 0
+            row["handed in"] = f"late by {late:.1f} h" if late > 0 else "yes"
+            mine[name] = job
+        row["handed in"] += "" if student.listed else ", not in the roster"
+        row["copy"] = "; ".join(f"{name[:2]}: {job.copy}" for name, job in mine.items())
+        row["altered"] = "; ".join(f"{name[:2]}: {', '.join(job.altered)}" for name, job in mine.items() if job.altered)
+        rows.append(row)
+        jobs.append(mine)
+    names = sorted({name for mine in jobs for name in mine})
+    for name in names:
+        _mark(name, [mine[name] for mine in jobs if name in mine])
+    for row, mine in zip(rows, jobs, strict=True):
+        columns = {
+            key: entry for name in names for key, entry in (mine[name].columns if name in mine else blank(name)).items()
+        }
+        row["right"] = sum(entry == "right" for key, entry in columns.items() if key.count(" ") == 1)
+        row |= {what: sum(entry or 0 for key, entry in columns.items() if key.endswith(f" {what}")) for what in COUNTS}
+        row |= columns
+    return pd.DataFrame(rows).map(harmless)
+
+
+def _mark(name: str, jobs: Sequence[Job]) -> None:
+    """Write marks into the columns of those who answered tasks of a notebook."""
+    try:
+        names = lesson(notebooks()[name]) if any(job.answers for job in jobs) else {}
+    except Exception as error:
+        for job in jobs:
+            job.columns.update({f"{name[:2]} {task}": f"unread: no run here: {error}" for task in job.answers})
+        return
+    for job in bar(jobs, name):
+        for task, right, reply in marks(job.notebook, names, job.answers) if job.answers else ():
+            job.columns[f"{name[:2]} {task}"] = {True: "right", False: "wrong", None: f"unread: {reply}"}[right]
+
+
+def harmless(entry: Any) -> Any:
+    """Return an entry that no spreadsheet takes for a formula."""
+    return f"'{entry}" if isinstance(entry, str) and entry.startswith(("=", "+", "-", "@", "\t", "\r")) else entry
+
+
+def filled_in(table: pd.DataFrame, earlier: pd.DataFrame) -> pd.DataFrame:
+    """Return a table with what a teacher has written into an earlier one: points, and columns of his own."""
+    own = [name for name in earlier if name not in table or name.endswith(POINTS)]
+    kept = earlier.set_index("student")[own].reindex(table["student"]).fillna("")
+    return table.assign(**{name: kept[name].to_numpy() for name in own})
+
+
+def students(folder: Path, roster: Path | None) -> list[Student]:
+    """Return the students of a roster, and whoever else has handed in."""
+    folders = sorted(f for f in folder.iterdir() if f.is_dir() and not f.is_symlink()) if folder.is_dir() else []
+    if not folders:
+        raise ValueError(f"{folder} holds no folders; put each student's notebooks into one with the student's name")
+    if roster is None:
+        return [Student(f.name, f) for f in folders]
+    with open(roster, encoding="utf-8-sig", newline="") as file:
+        rows = [{key: (entry or "").strip() for key, entry in row.items() if key} for row in csv.DictReader(file)]
+    names = [same_name(row.get("student", "")) for row in rows]
+    if not rows or "" in names or len(set(names)) < len(names):
+        raise ValueError(f"{roster} needs a first line with the word student, and below it each name once")
+    found = []
+    for row in rows:
+        known = same_name(row.get("folder") or row["student"])
+        own = (f for f in folders if same_name(f.name) == known or same_name(f.name).startswith(f"{known}_"))
+        try:
+            due = datetime.fromisoformat(row["due"]) if row.get("due") else None
+        except ValueError:
+            raise ValueError(f"{row['student']} is due at {row['due']!r}; write it as 2026-03-01T12:00") from None
+        found.append(Student(row["student"], next(own, None), due))
+    return found + [Student(f.name, f, None, False) for f in folders if all(s.folder != f for s in found)]
+
+
+def read(file: Path) -> tuple[str, dict[str, str], str, str]:
+    """Return the name of a notebook that somebody wrote, its cells, whose copy it says to be, and its outputs.
+
+    A ValueError says why it is none of the course's.
+    """
+    if file.is_symlink() or not file.is_file() or file.lstat().st_size > LARGEST:
+        raise ValueError(f"not a plain file of at most {LARGEST // 10**6} MB")
+    notebook = json.loads(file.read_bytes())
+    cells = notebook.get("cells") if isinstance(notebook, dict) else None
+    if not isinstance(cells, list) or not all(isinstance(cell, dict) for cell in cells):
+        raise ValueError("not a notebook")
+    sources = [(str(c.get("id")), c.get("source", "")) for c in cells]
+    texts = {key: "".join(map(str, text)) if isinstance(text, list) else str(text) for key, text in sources}
+    name = max(_ids(), key=lambda name: len(_ids()[name] & set(texts)))
+    if len(_ids()[name] & set(texts)) < len(_ids()[name]) / 3:
+        raise ValueError("none of the course's notebooks, or its cells have lost their ids")
+    said = notebook.get("metadata")
+    ours = said.get(OURS) if isinstance(said, dict) else None
+    shown = " ".join(str(cell.get("outputs", "")) for cell in cells)
+    return name, texts, str(ours.get("student", "")) if isinstance(ours, dict) else "", shown
+
+
+@cache
+def _ids() -> dict[str, set[str]]:
+    return {name: {cell["id"] for cell in students_copy(shipped)["cells"]} for name, shipped in notebooks().items()}
+
+
+def blank(name: str) -> dict[str, Any]:
+    """Return the columns of a notebook that was not handed in."""
+    columns: dict[str, Any] = {}
+    for task in (task for task, *_ in programs(notebooks()[name]) if task):
+        label = f"{name[:2]} {task}"
+        columns |= {label: "missing", f"{label} answer": ""} | {f"{label} {what}": None for what in COUNTS}
+    for task, criteria in questions(name):
+        label = f"{name[:2]} {task}"
+        columns |= {f"{label} text": ""} | {f"{label}: {criterion}{POINTS}": "" for criterion in criteria}
+    return columns
+
+
+def questions(name: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield a notebook's questions that are answered in words, and the criteria for their answers."""
+    for cell in notebooks()[name]["cells"]:
+        if cell["cell_type"] == "markdown" and "solution" in cell["metadata"].get("tags", ()):
+            yield cell["id"].removesuffix("-model"), cell["metadata"].get(OURS, {}).get("rubric", ["answer"])
+
+
+def compared(student: str, name: str, cells: Mapping[str, str], said: str, run_code: bool) -> Job:
+    """Return what a student handed in, compared with what was given; its answers are to be marked."""
+    own = bool(same_name(said))
+    copy = "common" if not own else "own" if same_name(said) == same_name(student) else f"of {said}"
+    mine = individual(notebooks()[name], student) if own else notebooks()[name]
+    given = {cell["id"]: "".join(cell["source"]) for cell in students_copy(mine)["cells"]}
+    checks = {task: check for task, _, check in programs(mine) if task}
+    same = {key for key, text in given.items() if _plain(text) == _plain(cells.get(key, ""))}
+    free = {key for key in given if key in checks or "-answer-" in key}
+    altered = [key if key in cells else f"{key} (gone)" for key in given if key not in same | free]
+    answers, part = {}, blank(name)
+    for task, check in checks.items():
+        try:
+            value = literal(cells.get(task, ""), answered(check)[1])
+            if value is None and run_code:
+                value = literal(f"answer = {run(cells[task], mine, task)}", "answer")
+            if value is not ... and not _fits(value, answered(check)[0]):
+                raise ValueError("its cell gives no plain text or number")
+        except ValueError as error:
+            part[f"{name[:2]} {task}"] = f"unread: {error}"
+            continue
+        part[f"{name[:2]} {task}"] = "empty"  # until it is marked
+        if value is not ...:
+            answers[task] = value
+            part[f"{name[:2]} {task} answer"] = str(value)
+    for task, _ in questions(name):
+        part[f"{name[:2]} {task} text"] = said_in(cells.get(f"{task}-model-answer-1", ""))
+    return Job(copy, altered, mine, answers, part)
+
+
+def _plain(text: str) -> str:
+    """Return a cell without what a student may add: a hint that is asked for behind the last bracket."""
+    return re.sub(r"\.hint\(\d\)\s*$", "", text.replace("\r\n", "\n").strip())
+
+
+def _parsed(source: str) -> list[ast.stmt]:
+    if len(source) > LONGEST:
+        raise ValueError(f"more than {LONGEST} characters")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of what a student escapes in a text
+        try:
+            return ast.parse(source).body
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            raise ValueError("its cell is no Python") from None
+
+
+def literal(source: str, name: str) -> Any:
+    """Return the last value that a program gives to a name, without running it: dots if none, None if no literal."""
+    value: Any = ...
+    for statement in _parsed(source):
+        if isinstance(statement, ast.Assign) and name in map(ast.unparse, statement.targets):
+            try:
+                value = ast.literal_eval(statement.value)
+            except (ValueError, TypeError, RecursionError, MemoryError):
+                value = None
+    return value
+
+
+def said_in(source: str) -> str:
+    """Return the sentence that a program hands to `model_answer`, without running it."""
+    try:
+        calls = (
+            node for part in _parsed(source) for node in ast.walk(part) if isinstance(node, ast.Call) and node.args
+        )
+        said = [ast.literal_eval(call.args[0]) for call in calls if ast.unparse(call.func) == "model_answer"]
+    except ValueError:
+        return ""
+    return next((text for text in said if isinstance(text, str)), "")
+
+
+def _fits(value: Any, function: str) -> bool:
+    """Whether an answer is of the kind that a check takes: text, or numbers, or a few of either."""
+    if isinstance(value, dict):
+        return all(isinstance(key, str) for key in value) and _fits(list(value.values()), function)
+    if isinstance(value, list | tuple):
+        return len(value) <= 20 and not any(isinstance(v, list | tuple | dict) or not _fits(v, function) for v in value)
+    return is_real(value) and abs(value) < 1e12 if function == "reach" else isinstance(value, str)

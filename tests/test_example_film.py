@@ -1,0 +1,57 @@
+"""The film that ships is what the renderer draws, and its distances are true; who only turns is told not to trust."""
+
+import av
+import numpy as np
+import pandas as pd
+import pytest
+from film_renderer import example_film as draw
+from film_renderer import quick_film
+
+from percept_obs.film import example_film, read_film
+
+
+def shots(path):
+    """Times and grey pictures of a film."""
+    with av.open(str(path)) as film:
+        frames = [(frame.time, frame.to_ndarray(format="gray").astype(float)) for frame in film.decode(video=0)]
+    return [np.array(part) for part in zip(*frames, strict=True)]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    path = tmp_path_factory.mktemp("film") / "film.mp4"
+    return path, draw(path)
+
+
+@pytest.mark.slow
+def test_it_is_drawn_by_the_renderer_and_small(made):
+    (time, shipped), (again, drawn) = shots(example_film()), shots(made[0])
+    assert time.tolist() == again.tolist()
+    assert np.abs(shipped - drawn).mean() < 3  # encoders differ from version to version
+    assert sum(path.stat().st_size for path in example_film().parent.glob("*.*")) < 1e6
+
+
+@pytest.mark.slow
+def test_its_distances_are_true(made):
+    known = pd.read_csv(example_film().with_name("distances.csv"))
+    assert len(known) > 40
+    assert made[1].distance_at(known["time"], known[["u", "v"]].to_numpy()) == pytest.approx(known["depth"], abs=1e-4)
+
+
+@pytest.mark.slow
+def test_it_shows_the_board_and_the_camera_is_found(made):
+    film = read_film(example_film())
+    off = [film.sighting.corners[k] - made[1].corners(k) for k in range(len(film.sighting.time))]
+    assert np.isfinite(off).mean() > 0.95
+    assert np.sqrt(np.nanmean(np.square(off))) < 0.15
+    assert film.camera.focal[0] == pytest.approx(540, rel=3 * film.focal_deviation)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "least", "most"), [("sideways", 0.8, 1.0), ("turn", 0.0, 0.2)])
+def test_moving_sideways_is_trusted_and_turning_is_not(kind, least, most, tmp_path):
+    film = read_film(quick_film(11, tmp_path, kind=kind, tremor=0.3)[0])
+    trusts = [run.trust() for run in film.runs[::4]]
+    assert least <= np.mean([trust.trusted for trust in trusts]) <= most
+    if kind == "turn":
+        assert "Do not trust the estimate: the filter itself is not sure enough" in trusts[0].sentence
