@@ -50,9 +50,9 @@ def frames(path, time, size, readout=(0.0, 0.0), zoom=None, shift=None, roll=Non
         y = y * (1 + BEND * (y**2).sum(axis=-1, keepdims=True)) * (1 + zoom(t)[..., None])
         c, s = np.cos(roll(t)), np.sin(roll(t))
         y = np.stack([c * y[..., 0] - s * y[..., 1], s * y[..., 0] + c * y[..., 1]], axis=-1)
-        pixels = FOCAL * y + centre + shift(t)
+        pixels = FOCAL * y + centre
         late = (pixels / size - 0.5) @ np.array(readout)
-    return pixels
+    return pixels + shift(time)[:, None]
 
 
 def spoiled(draw, pixels, size, noise=0.2, correlated=0.0, outliers=0.0, lost=0.05):

@@ -218,7 +218,7 @@ def _rows(corners: Corners, state: State) -> tuple[Array, Array, Array]:
     seen, slopes = cv2.projectPoints(X.reshape(-1, 3), np.zeros(3), np.zeros(3), matrix, lens[4:])
     zoom = 1 + own[:, None, FOCUS]
     slopes, about = slopes.reshape(K, n, 2, -1) * zoom[..., None], seen.reshape(K, n, 2) - corners.lens[2:4]
-    pixels = corners.lens[2:4] + zoom * about + own[:, None, SHIFT]
+    pixels = corners.lens[2:4] + zoom * about
     slopes[..., POSE] += slopes[..., POSE + 1]
     spline = CubicSpline(corners.time, pixels)
     speed, growth = spline(corners.time, 1), spline(corners.time, 2)
@@ -233,7 +233,7 @@ def _rows(corners: Corners, state: State) -> tuple[Array, Array, Array]:
         slopes[..., 3:6] @ axes,
         about[..., None],
         np.broadcast_to(np.eye(2), (K, n, 2, 2)),
-        (corners.pixels - pixels - moved)[..., None],
+        (corners.pixels - pixels - own[:, None, SHIFT] - moved)[..., None],
     )
     return np.concatenate(parts, axis=-1), moved, speed
 
