@@ -11,7 +11,7 @@ from percept_obs.compile import Array
 from percept_obs.film.board import Board
 from percept_obs.film.faults import FEWEST, FEWEST_CORNERS, Faults, find_faults
 from percept_obs.film.film import BOARD, TRIANGULATION, Film
-from percept_obs.film.lens import find_lens, find_poses
+from percept_obs.film.lens import Seen, find_lens, find_poses
 from percept_obs.film.pictures import undistorted
 from percept_obs.film.sighting import SHORTEST_TRACK, Sighting, sight
 from percept_obs.film.triangulation import triangulate
@@ -133,7 +133,7 @@ def read_film(
             "with the board in the picture"
         )
     return Film(
-        tuple(replace(recording, doubt=doubt) for recording in found),
+        tuple(replace(each, doubt=doubt, noise_variance=_noise(each, seen)) for each in found),
         (BOARD, TRIANGULATION),
         undistorted(sighting, camera),
         video.path.name,
@@ -146,6 +146,19 @@ def read_film(
         printed,
         seen,
     )
+
+
+def _noise(recording: Recording, seen: Seen | None) -> float:
+    """Return the variance of white noise that is as bad as the errors of a track, and of the poses if they are known.
+
+    Velocities of poses integrate to the poses again, so that errors of these count like errors of the image.
+    """
+    variance = recording.noise_variance or 0.0
+    if seen is not None:
+        spread = np.median(np.diagonal(seen.covariance, axis1=1, axis2=2), axis=0)
+        depth = float(np.median(recording.distances[TRIANGULATION]))
+        variance += float(spread[:3].mean() + spread[3:].mean() / depth**2)
+    return variance * max(1.0, ALIKE / float(np.median(recording.intervals)))
 
 
 def _doubt(faults: Faults | None) -> str:
@@ -248,7 +261,7 @@ def _recordings(
             surface,
             path.motion,
             truth=None if known is None else surface.project(local[BOARD])[first:],
-            noise_variance=place.spread**2 * max(1.0, ALIKE / float(np.median(np.diff(time[part])))),
+            noise_variance=place.spread**2,
             distances={**distances, BOARD: distances.get(BOARD, np.full(len(part) - first, np.nan))},
             source=name if len(parts) == 1 else f"{name}, from {time[part[0]]:.1f} s",
         )

@@ -88,7 +88,7 @@ def sight(video: Video, board: Board) -> Sighting:
     name = hashlib.sha256(json.dumps([VERSION, content, asdict(board)]).encode()).hexdigest()
     kept = user_cache_path("percept_obs") / "films" / f"{name[:32]}.npz"
     try:
-        with np.load(kept) as parts:
+        with open(kept, "rb") as file, np.load(file) as parts:
             return Sighting(**parts)
     except (OSError, ValueError, TypeError, EOFError, BadZipFile):  # not there, or not whole
         sighting = _look(video, board)
