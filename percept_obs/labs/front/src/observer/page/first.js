@@ -137,7 +137,9 @@ export class ObserverFirst extends FirstScreen {
   pick({ clientX, clientY, target }) {
     const { left, top } = this.image.figure.getBoundingClientRect();
     const apart = ({ at: [x, y] }) => Math.hypot(x - (clientX - left), y - (clientY - top));
-    const [nearest] = this.seen.tracks.toSorted((one, other) => apart(one) - apart(other));
+    // Nothing is seen before the first picture, and where settings are refused.
+    const tracks = this.seen?.tracks ?? [];
+    const [nearest] = tracks.toSorted((one, other) => apart(one) - apart(other));
     if (nearest && apart(nearest) < NEAR && !target.closest("button")) this.choose(nearest.name);
   }
 
