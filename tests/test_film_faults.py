@@ -48,11 +48,12 @@ def test_a_clean_film_is_accused_of_nothing():
 @pytest.mark.slow
 @pytest.mark.parametrize("fault", [each for each in FAULTS if each != "clean"])
 def test_a_fault_is_found_by_name(fault):
-    """Twenty films each with ALL_SAMPLES=1; shifted pictures hide all other faults."""
+    """Twenty films each with ALL_SAMPLES=1; shifted pictures hide other faults, and with them may pass for unknown."""
     wanted = {name for part, name in NAMED.items() if part in fault}
     wanted &= {"stabilisation"} if "stabilised" in fault else wanted
     for seed in range(sampled(2, 20)):
-        assert wanted <= names(sight(seed, fault).found) <= wanted | {"unknown"}, seed
+        named = names(sight(seed, fault).found)
+        assert named == wanted or ("unknown" in named and "stabilised" in fault), (seed, named)
 
 
 @pytest.mark.slow
@@ -105,7 +106,7 @@ def test_a_bent_board_is_named_with_its_size():
     [
         ("no parallax", {"sway": 0.004, "along": 0.004}),
         ("along the axis", {"sway": 0.004, "along": 0.06}),
-        ("small board", {"distance": 1.5}),
+        ("small board", {"distance": 1.2}),
     ],
 )
 def test_a_path_that_shows_little_is_named(key, moved):
