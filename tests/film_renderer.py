@@ -22,7 +22,7 @@ from percept_obs.film import Board
 BOARD = Board()
 CENTRE = np.array([*BOARD.size, 0.0]) / 2
 TICKS = 90_000
-"""Of the film's clock in a second."""
+"""Ticks of the film's clock in a second."""
 UPRIGHT = np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1.0]])
 """From the camera's frame of an upright picture to the frame of the sensor, whose x axis points up."""
 

@@ -1,4 +1,4 @@
-"""What spoils a film of a board is found by name with its size, and a clean film is accused of nothing."""
+"""Faults of a film of a board are found by name with their size, and a clean film is accused of nothing."""
 
 from dataclasses import replace
 
@@ -106,7 +106,7 @@ def test_a_bent_board_is_named_with_its_size():
     [
         ("no parallax", {"sway": 0.004, "along": 0.004}),
         ("along the axis", {"sway": 0.004, "along": 0.06}),
-        ("small board", {"distance": 1.2}),
+        ("small board", {"distance": 1.5}),
     ],
 )
 def test_a_path_that_shows_little_is_named(key, moved):

@@ -100,7 +100,7 @@ def test_where_there_is_no_bound_the_page_draws_none(lab, node):
 
 @pytest.fixture(scope="module")
 def of_every_structure(lab, node):
-    """What the page says of all observers of every structure, with noise and losses; each start and switch in turn."""
+    """Answers of the page on all observers of every structure, with noise and losses; each start and switch in turn."""
     tasks, starts = [], list(enumerate(("own", "zero", "chosen", "own")))
     for n, key in enumerate(KEYS):
         surface, outputs = key.split()

@@ -17,7 +17,7 @@ EXCEPT = {"ES01": "one sentence may say all"}
 
 PLACES = {f"{module}.{names[0]}": value for module, values in public().items() for names, value in values}
 MEMBERS = {f"{place}.{name}" for place, value in PLACES.items() if inspect.isclass(value) for name in dir(value)}
-"""What the reference shows besides, by its address."""
+"""Attributes and methods that the reference shows besides, by their address."""
 MADE = ("CanonicalForm", "PartitionedSystem", "Review")
 """Classes whose parts the package makes, so that nothing is refused before a method is called."""
 

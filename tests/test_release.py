@@ -1,4 +1,4 @@
-"""What is released agrees: versions, licences, the recipe of conda-forge, and the Pythons that are tried."""
+"""All parts of a release agree: versions, licences, the recipe of conda-forge, and the Pythons that are tried."""
 
 import re
 import tomllib

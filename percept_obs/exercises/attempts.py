@@ -1,4 +1,4 @@
-"""How often an answer was checked, with how many hints and for how long: written below the check's reply."""
+"""Counts of checks, hints and minutes, written below the reply to an answer."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class _Tallied:
 
     @property
     def right(self) -> bool | None:
-        """Whether the answer is right, as the reply says."""
+        """True if the answer is right, False if it is wrong, None if that is not known."""
         return self.reply.right
 
     def hint(self, number: int) -> _Tallied:

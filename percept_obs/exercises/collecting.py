@@ -126,7 +126,7 @@ def _mark(name: str, jobs: Sequence[Job]) -> None:
     """Write marks into the columns of those who answered tasks of a notebook."""
     try:
         names = lesson(notebooks()[name]) if any(job.answers for job in jobs) else {}
-    except Exception as error:
+    except Exception as error:  # the notebook is ours, and its data or a package may be missing here
         for job in jobs:
             job.columns.update({f"{name[:2]} {task}": f"unread: no run here: {error}" for task in job.answers})
         return
@@ -288,7 +288,7 @@ def said_in(source: str) -> str:
 
 
 def _fits(value: Any, function: str) -> bool:
-    """Whether an answer is of the kind that a check takes: text, or numbers, or a few of either."""
+    """Return True for an answer of the kind that a check takes: text, or numbers, or a few of either."""
     if isinstance(value, dict):
         return all(isinstance(key, str) for key in value) and _fits(list(value.values()), function)
     if isinstance(value, list | tuple):

@@ -111,7 +111,7 @@ class _Task:
 
     @property
     def changes(self) -> Mapping[tuple[str, ...], Any]:
-        """What changes the text of a cell, by its kind and tag."""
+        """Changes of the text of a cell, by its kind and tag."""
         return {
             ("markdown", "exercise"): self.words,
             ("code", "solution"): self.solution,

@@ -80,7 +80,7 @@ def marks(
                 exec(compile(before, task, "exec"), own)
                 reply = eval(compile(check, task, "eval"), own)
                 mark = reply.right, str(reply)
-        except Exception as error:
+        except Exception as error:  # whatever an answer makes a check raise, it has no mark
             mark = None, f"the check cannot run: {error}"
         if task in answers:
             yield task, *mark

@@ -25,6 +25,7 @@ from percept_obs.film.adjustment import (
     start,
 )
 from percept_obs.film.board import Board
+from percept_obs.film.lens import FEWEST_CORNERS
 from percept_obs.film.sharpness import SHARE
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
@@ -33,8 +34,8 @@ from percept_obs.studies.diagnosis import Finding
 CLEARLY, SURELY = 5.0, 4.0
 """Logarithm by which corners are likelier with a fault that is named, and standard deviations of what else is named."""
 
-FEWEST, FEWEST_CORNERS = 30, 8
-"""Pictures with a pose that are needed, and corners in each of them."""
+FEWEST = 30
+"""Pictures with a pose that are needed."""
 
 ROUNDS = 4
 """Searches at most for the faults that explain the corners best, each with the last one's corrected."""

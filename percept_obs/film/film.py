@@ -94,7 +94,7 @@ class Film(Footage):
 
     @property
     def sentence(self) -> str:
-        """What the film holds, and what spoils it."""
+        """Contents of the film, and what spoils it."""
         time, corners = self.sighting.time, sum(each.truth is not None for each in self)
         width, height = self.video.size
         first = (

@@ -11,7 +11,7 @@ from percept_obs.compile import Array, Flags, Indices
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
 
-FEWEST = 8
+FEWEST_CORNERS = 8
 """Corners of the board that a picture shows at least, for a pose."""
 
 ALIKE = 1.5
@@ -23,17 +23,19 @@ UNSURE = 0.01
 FOLDED = 0.1
 """Least slope of a lens in the corner of the picture; below it no direction may be seen there."""
 
+FAR, TRIMS = 5.0, 3
+"""Medians of the corners' errors beyond which one is left out, and how often the lens is found."""
+
 MOST_VIEWS = 40
 """Pictures from which the lens is found, as different as there are."""
 
 
 @dataclass(frozen=True, eq=False)
 class Lens:
-    """Camera, the relative standard deviation of its focal length, and the views' root mean square error in pixels."""
+    """Camera, and the relative standard deviation of its focal length."""
 
     camera: PixelCamera
     deviation: float
-    error: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,29 +57,48 @@ def find_lens(corners: Array, places: Array, size: tuple[int, int]) -> Lens:
     import cv2
 
     views = _different(corners)
-    seen = [np.isfinite(corners[k]).all(axis=1) for k in views]
-    there = [places[each].astype(np.float32) for each in seen]
-    pixels = [corners[k][each].astype(np.float32)[:, None] for k, each in zip(views, seen, strict=True)]
+    pixels = corners[views]
     start = np.array([[max(size), 0, (size[0] - 1) / 2], [0, max(size), (size[1] - 1) / 2], [0, 0, 1.0]])
     plain = cv2.CALIB_FIX_K2 | cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST  # more is not told by a small board
     middle = cv2.CALIB_FIX_PRINCIPAL_POINT
-    for fixed in (0, middle, middle | cv2.CALIB_FIX_K1):
-        flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO | plain | fixed
-        error, matrix, lens, _, _, spread, *_ = cv2.calibrateCameraExtended(
-            there, pixels, size, start.copy(), np.zeros(5), flags=flags
-        )
-        corner = float(np.hypot(*size)) / 2 / matrix[1, 1]
-        if spread[2:4].max() < UNSURE * max(size) and 1 + 3 * lens.ravel()[0] * corner**2 > FOLDED:
-            break
-    camera = PixelCamera((matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2]), size, lens.ravel()[:4])
-    alike = np.sqrt(np.mean([2 * len(each) for each in there]))  # the errors in one view are no independent ones
-    return Lens(camera, float(alike * spread[1, 0] / matrix[1, 1]), float(error))
+    fixed = [0, middle, middle | cv2.CALIB_FIX_K1]
+    for _ in range(TRIMS):
+        for more in fixed:
+            flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO | plain | more
+            matrix, lens, spread, off = _calibrated(pixels, places, size, start, flags)
+            corner = float(np.hypot(*size)) / 2 / matrix[1, 1]
+            if spread[2:4].max() < UNSURE * max(size) and 1 + 3 * lens[0] * corner**2 > FOLDED:
+                break
+        pixels = np.where((off < FAR * np.nanmedian(off))[..., None], pixels, np.nan)
+    camera = PixelCamera((matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2]), size, lens[:4])
+    alike = np.sqrt(2 * np.isfinite(off).sum(axis=1).mean())  # the errors in one view are no independent ones
+    return Lens(camera, float(alike * spread[1] / matrix[1, 1]))
+
+
+def _calibrated(
+    pixels: Array, places: Array, size: tuple[int, int], start: Array, flags: int
+) -> tuple[Array, Array, Array, Array]:
+    """Return the camera's matrix, its lens, the deviations of both, and how far off each corner is, shape (K, n)."""
+    import cv2
+
+    seen = np.asarray(np.isfinite(pixels).all(axis=-1))
+    views = np.flatnonzero(seen.sum(axis=1) >= FEWEST_CORNERS)
+    there = [places[seen[k]].astype(np.float32) for k in views]
+    shown = [pixels[k, seen[k]].astype(np.float32)[:, None] for k in views]
+    _, matrix, lens, turns, shifts, spread, *_ = cv2.calibrateCameraExtended(
+        there, shown, size, start.copy(), np.zeros(5), flags=flags
+    )
+    off = np.full(seen.shape, np.nan)
+    for k, points, found, turn, shift in zip(views, there, shown, turns, shifts, strict=True):
+        expected = cv2.projectPoints(points, turn, shift, matrix, lens)[0]
+        off[k, seen[k]] = np.linalg.norm((expected - found)[:, 0], axis=1)
+    return matrix, lens.ravel(), spread.ravel(), off
 
 
 def _different(corners: Array) -> list[int]:
     """Return pictures with most of the corners that differ most from each other, at most `MOST_VIEWS`."""
     count = np.isfinite(corners).all(axis=2).sum(axis=1)
-    rich = np.flatnonzero(count >= max(FEWEST, 0.7 * count.max()))
+    rich = np.flatnonzero(count >= max(FEWEST_CORNERS, 0.7 * count.max()))
     filled = np.where(np.isfinite(corners[rich]), corners[rich], np.nanmean(corners[rich], axis=1, keepdims=True))
     shape = filled.reshape(len(rich), -1)
     chosen = [0]
@@ -90,7 +111,7 @@ def _different(corners: Array) -> list[int]:
 
 def usable(corners: Array) -> Flags:
     """Return True for pictures that show enough of the board, not all in a line, shape (K,)."""
-    return np.asarray(np.isfinite(corners).all(axis=2).sum(axis=1) >= FEWEST)
+    return np.asarray(np.isfinite(corners).all(axis=2).sum(axis=1) >= FEWEST_CORNERS)
 
 
 def find_poses(time: Array, corners: Array, places: Array, camera: PixelCamera) -> Seen:

@@ -9,9 +9,9 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.film.board import Board
-from percept_obs.film.faults import FEWEST, FEWEST_CORNERS, Faults, find_faults
+from percept_obs.film.faults import FEWEST, Faults, find_faults
 from percept_obs.film.film import BOARD, TRIANGULATION, Film
-from percept_obs.film.lens import Seen, find_lens, find_poses
+from percept_obs.film.lens import FEWEST_CORNERS, Seen, find_lens, find_poses
 from percept_obs.film.pictures import undistorted
 from percept_obs.film.sighting import SHORTEST_TRACK, Sighting, sight
 from percept_obs.film.triangulation import triangulate
