@@ -70,7 +70,7 @@ def find_lens(corners: Array, places: Array, size: tuple[int, int]) -> Lens:
             if spread[2:4].max() < UNSURE * max(size) and 1 + 3 * lens[0] * corner**2 > FOLDED:
                 break
         pixels = np.where((off < FAR * np.nanmedian(off))[..., None], pixels, np.nan)
-    camera = PixelCamera((matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2]), size, lens[:4])
+    camera = PixelCamera((matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2]), size, lens[:4].tolist())
     alike = np.sqrt(2 * np.isfinite(off).sum(axis=1).mean())  # the errors in one view are no independent ones
     return Lens(camera, float(alike * spread[1] / matrix[1, 1]))
 
