@@ -406,11 +406,8 @@ export class Lab extends LabBase {
   speakNow() {
     this.spoken = performance.now();
     // What is drawn may be of settings before those that cannot be shown.
-    if (!this.late) this.view.problem("");
-    if (this.face === "first") {
-      this.view.problem(this.shown.problem ?? "");
-      return;
-    }
+    if (!this.late) this.view.problem((this.face === "first" && this.shown.problem) || "");
+    if (this.face === "first") return;
     this.panel.show();
     this.view.steps(this.state);
     this.speak();

@@ -51,9 +51,10 @@ export class PointsFirst extends FirstScreen {
 
   // What a hand does.
 
-  /** Move a mark of the body to a direction, at the depth that it has now. */
+  /** Move a mark of the body to a direction, at the depth that it has now; none of a body that is drawn late. */
   aim(k, [y1, y2]) {
     const { body, places } = this.seen;
+    if (places.length !== this.lab.settings.points.length) return;
     const depth = places[k][2];
     this.lab.change({ points: body.movedTo(k, [y1 * depth, y2 * depth, depth]) });
   }
@@ -61,6 +62,7 @@ export class PointsFirst extends FirstScreen {
   /** Hide a mark from now on, or show it; at both ends of the time, for all of it. */
   hide(k) {
     const { hidden, duration } = this.lab.settings;
+    if (k >= hidden.length) return;
     const now = this.clock.present();
     const whole = now <= this.clock.start || now >= this.clock.end;
     const from = whole ? 0 : now;
