@@ -25,8 +25,10 @@ export class Picture {
     return this.size;
   }
 
+  /** Take a size in whole pixels: a part of one would move lines and not what lies below them. */
   resize(width, height) {
-    this.size = width && height ? { width: Math.max(120, width), height: Math.max(60, height) } : null;
+    const [across, down] = [Math.round(width), Math.round(height)];
+    this.size = across && down ? { width: Math.max(120, across), height: Math.max(60, down) } : null;
   }
 
   /** Fit the canvas to its figure's last known size, with a font for its letters; return its size in CSS pixels. */
