@@ -122,17 +122,19 @@ def assert_follows_python(settings, told, tolerance=1e-8):
     and "divergedAt".  Python's runs are returned, by the observers' names.
     """
     believed = settings["believed"] and affine(settings["believed"]["A"], settings["believed"]["b"])
-    start = {"own": None, "zero": [0.0] * 3, "chosen": settings["start"]["values"]}[settings["start"]["mode"]]
     ours = python_runs(settings)
     for name, run in ours.items():
         outputs = run.recording.outputs
+        y1, y2, inverse = settings["start"]["values"]
+        values = [y1, y2, *outputs[0, 2:], inverse]  # a size that is seen starts as it is seen
+        start = {"own": None, "zero": np.zeros(len(values)), "chosen": values}[settings["start"]["mode"]]
         signs = np.sign(np.random.default_rng(0).uniform(-1, 1, outputs.shape))
         nudged = replace(run.recording, outputs=outputs + NUDGE * signs * np.fmax(1, np.abs(outputs)))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", StepTooLong)
             gains = {gain.name: gain.value * (1 + NUDGE) for gain in run.observer.gains}  # an exact hold has no samples
             moved = track(nudged, run.observer.with_gains(**gains), start, run.hold, believed or None).estimate
-        found = as_array(told[name]["estimate"], 3)
+        found = as_array(told[name]["estimate"], run.estimate.shape[1])
         assert found.shape == run.estimate.shape
         assert (told[name]["divergedAt"] is None) == (run.diverged_at is None)
         with np.errstate(all="ignore"):  # what grows without bounds is compared as far as it is finite
