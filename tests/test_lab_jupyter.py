@@ -103,6 +103,7 @@ def test_python_may_be_busy_set_the_settings_and_say_what_is_wrong(browser_page,
     page.click(".lm-MenuBar-item:has-text('Run')")
     page.click(RUN_ALL)
     page.wait_for_function(f"window.perceptObsLabs?.size && {FIRST}.shown")
+    page.wait_for_selector(".percept-lab details", state="attached")
     page.evaluate(UNFOLD)
     for seed in range(1, 4):  # while the kernel sleeps
         page.fill(control("seed number"), str(seed))
@@ -112,7 +113,7 @@ def test_python_may_be_busy_set_the_settings_and_say_what_is_wrong(browser_page,
     page.fill(control("seed number"), "5")
     page.wait_for_selector(".percept-obs-error:not([hidden])")
     assert "ZeroDivisionError" in page.inner_text(".percept-obs-error:not([hidden])")
-    assert state(page)["settings"]["seed"] == 5
+    page.wait_for_function(f"{FIRST}.shown.settings.seed === 5")
 
 
 def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_page, folder, server):

@@ -41,7 +41,9 @@ def test_it_is_the_derivative_of_every_smooth_observer(make, form):
         return
     start = START["+".join(form.measured)]
     observer = make(form, iterates=2) if make.key == "linear_approximation" else make(form)
-    found = sensitivity(RECORDING, observer, start, ENTRIES)
+    # The equivariant filter's equations are so long that one entry takes as long as all the others.
+    asked = sampled(ENTRIES[1:], ENTRIES) if make.key == "equivariant_filter" else ENTRIES
+    found = sensitivity(RECORDING, observer, start, asked)
     assert not len(found.run.resets)
     for k, entry in enumerate(found.entries):
         expected = slope(RECORDING, observer, start, entry)
