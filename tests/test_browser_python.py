@@ -47,7 +47,7 @@ FROM_PYPI = {"ipython-pygments-lexers", "psygnal"}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("extra", [[], ["data"]], ids=["plain", "data"])
+@pytest.mark.parametrize("extra", sampled([[]], [[], ["data"]]), ids=str)
 def test_a_course_runs_without_threads_processes_and_other_extras(tmp_path, extra):
     command = [sys.executable, HERE / "without_threads.py", tmp_path, *extra]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)

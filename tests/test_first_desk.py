@@ -6,6 +6,7 @@ import re
 import pytest
 from lab_browser import control, painted, rested
 from matplotlib.image import imread
+from sample_sizes import across
 from test_desk_browser import LINE, at_desk, text_of
 
 from percept_obs.labs import derivation_desk
@@ -47,9 +48,9 @@ def page(browser):
     yield from at_desk(browser, derivation_desk(), reduced_motion="reduce", viewport={"width": 1240, "height": 760})
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize(("width", "height"), SIZES)
-def test_it_opens_with_few_words_and_controls_and_large_pictures(browser, width, height, scheme):
+@pytest.mark.parametrize(("size", "scheme"), across(SIZES, ["light", "dark"]))
+def test_it_opens_with_few_words_and_controls_and_large_pictures(browser, size, scheme):
+    width, height = size
     size = {"width": width, "height": height}
     for page in at_desk(browser, derivation_desk(), viewport=size, color_scheme=scheme, reduced_motion="reduce"):
         shown = page.evaluate(SHOWN)
@@ -63,8 +64,7 @@ def test_it_opens_with_few_words_and_controls_and_large_pictures(browser, width,
             assert page.locator(picture).bounding_box()["height"] >= least
 
 
-@pytest.mark.parametrize("face", ["first", "workbench"])
-@pytest.mark.parametrize("step", [1, 4, 6, 7])
+@pytest.mark.parametrize(("face", "step"), across(["first", "workbench"], [1, 4, 6, 7]))
 def test_the_picture_is_high_and_not_of_one_colour(browser, step, face):
     for page in at_desk(browser, derivation_desk(face=face, step=step)):
         for width in (390, 700, 830, 1240):

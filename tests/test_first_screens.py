@@ -8,7 +8,7 @@ from first_screens import COUNTS, READY, SIZES, asked, at_the_end, first_screen,
 from lab_alone import DRAWN, opened
 from lab_browser import control, painted
 from matplotlib.image import imread
-from sample_sizes import sampled
+from sample_sizes import across, sampled
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 
@@ -43,8 +43,7 @@ VARY = """([seed]) => {
 }"""
 
 
-@pytest.mark.parametrize("name", LABS)
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize(("name", "size"), across([*LABS], [*SIZES]))
 def test_it_opens_with_few_words_and_controls_and_large_pictures(name, size, browser):
     with first_screen(browser, LABS[name](), SIZES[size]) as page:
         found = [page.evaluate(COUNTS)]
@@ -71,8 +70,7 @@ def test_what_an_answer_claims_holds_in_the_picture(name, browser):
             page.wait_for_function(DRAWN)
 
 
-@pytest.mark.parametrize("name", LABS)
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize(("name", "size"), across([*LABS], [*SIZES]))
 def test_no_label_covers_another_or_is_cut(name, size, browser):
     with first_screen(browser, LABS[name](), SIZES[size]) as page:
         for seed in range(1, RANDOM + 1):
@@ -157,8 +155,7 @@ HIGH = 120
 """Least height of a picture in pixels."""
 
 
-@pytest.mark.parametrize("name", LABS)
-@pytest.mark.parametrize("kept", [False, True])
+@pytest.mark.parametrize(("name", "kept"), across([*LABS], [False, True]))
 def test_every_picture_is_high_and_not_of_one_colour(name, kept, browser, tmp_path):
     lab = LABS[name]()
     lab.save(tmp_path / "lab.html")

@@ -21,6 +21,7 @@ from lab_browser import (
     used_at_random,
 )
 from lab_settings import ALL
+from sample_sizes import across
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 
@@ -99,7 +100,10 @@ def python(kind):
     return MAKE[kind](**OPENING[kind])
 
 
-@pytest.mark.parametrize("drag", [drag_by_mouse, drag_by_touch, drag_by_keys])
+DRAGS = [drag_by_mouse, drag_by_touch, drag_by_keys]
+
+
+@pytest.mark.parametrize(("kind", "drag"), across([*MAKE], DRAGS), indirect=["kind"])
 def test_what_is_dragged_follows_the_hand(fresh, python, kind, drag):
     before = state(fresh)
     drag(fresh, control(HANDLE[kind]))

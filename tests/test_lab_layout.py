@@ -3,6 +3,7 @@
 import pytest
 from lab_alone import DRAWN
 from lab_browser import UNFOLD, control, painted
+from sample_sizes import across
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 
@@ -14,6 +15,7 @@ LABS = {
     "points": lambda: points_lab(duration=30.0),
 }
 NOTEBOOK = {"width": 848, "height": 679}
+SIZES = [NOTEBOOK, {"width": 1000, "height": 700}, {"width": 1280, "height": 800}]
 """Size of an output in JupyterLab whose window has 1280 x 800 pixels, with its file browser open."""
 
 AMONG = """(height) => {
@@ -83,8 +85,7 @@ TABS = {"observer": ["causes"], "structure": [], "points": []}
 """More tabs beside the pictures than all have."""
 
 
-@pytest.mark.parametrize("name", LABS)
-@pytest.mark.parametrize("size", [NOTEBOOK, {"width": 1000, "height": 700}, {"width": 1280, "height": 800}])
+@pytest.mark.parametrize(("name", "size"), across([*LABS], SIZES))
 def test_pictures_are_in_view_whichever_control_has_the_focus(show, name, size):
     page = show(LABS[name](), viewport=size)
     page.evaluate(AMONG, 900)
@@ -99,8 +100,7 @@ def test_pictures_are_in_view_whichever_control_has_the_focus(show, name, size):
         assert found["walked"] > (60 if everything else 25)
 
 
-@pytest.mark.parametrize("name", LABS)
-@pytest.mark.parametrize("width", [400, 285])
+@pytest.mark.parametrize(("name", "width"), across([*LABS], [400, 285]))
 def test_nothing_is_cut_or_small_and_no_control_is_lost_on_a_small_screen(show, name, width):
     page = show(LABS[name](), viewport=NOTEBOOK)
     page.evaluate(UNFOLD)
