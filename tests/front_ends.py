@@ -125,7 +125,7 @@ def _outlives_python(shown):
         shown.page.locator(".silence:visible").first.wait_for()
     shown.page.check(control("outputs y1"))
     shown.page.wait_for_function(
-        """() => [...window.perceptObsLabs].some(({ shown: { settings }, pending }) =>
+        """() => [...window.perceptObsLabs].some(({ shown: { settings, whole }, pending }) => whole &&
             settings.outputs.length === 1 && settings.gains.identifier_based.gain === 4 && !pending)"""
     )
     after = shown.state(0)
