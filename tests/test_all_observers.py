@@ -11,7 +11,6 @@ from examples import BOTH, FORMS, MOTIONS, ONE, OTHER, SQUARE, SURFACES, ZERO
 from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from sample_sizes import across
 
 from percept_obs import (
     Camera,
@@ -122,13 +121,9 @@ def test_started_at_the_truth_it_stays_there(name, form, scenario):
     assert_it_stays_at_the_truth(record(scenario), made(name, form))
 
 
-def named(value):
-    """The name of a maker or a form."""
-    return getattr(value, "key", None) or f"{value.view.name} {'+'.join(value.measured)}"
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(("make", "form"), across(COPIES, PARTITIONS), ids=named)
+@pytest.mark.parametrize("make", COPIES, ids=lambda make: make.key)
+@pytest.mark.parametrize("form", PARTITIONS, ids=lambda form: f"{form.view.name} {'+'.join(form.measured)}")
 def test_started_at_the_truth_it_stays_there_on_every_surface(make, form):
     if make.refusal(form):
         with pytest.raises((NotAffine, NotIntegrable, NeedsMotion, NeedsMoreOutputs)):

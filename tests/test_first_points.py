@@ -50,6 +50,18 @@ def images(places):
     return [[x / z, y / z] for x, y, z in places]
 
 
+LATE = """() => { const [lab] = window.perceptObsLabs;
+    const { points, hidden } = lab.settings;
+    lab.change({ points: points.slice(0, 1), hidden: hidden.slice(0, 1) }, true);
+    lab.first.aim(0, [0.1, 0.1]);  // of three marks, which are still drawn
+    lab.first.hide(2);
+    return [lab.settings.points.length, lab.settings.hidden.length]; }"""
+
+
+def test_marks_of_a_body_that_is_drawn_late_are_left_alone(page):
+    assert page.evaluate(LATE) == [1, 1]
+
+
 @pytest.mark.parametrize("time", [0.0, 3.3, 10.0])
 @pytest.mark.parametrize("mark", [0, 2])
 def test_a_mark_is_moved_at_the_depth_that_it_has_now_and_the_others_stay(page, time, mark):

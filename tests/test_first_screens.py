@@ -282,3 +282,30 @@ def test_the_chart_and_the_keys_of_the_play_button_move_the_time(page):
     assert page.evaluate("() => [...window.perceptObsLabs][0].state.cursor") > middle
     page.keyboard.press("Home")
     assert page.evaluate("() => [...window.perceptObsLabs][0].state.cursor") == 0
+
+
+BEHIND = """([z]) => { const [lab] = window.perceptObsLabs; const [x, y] = lab.settings.X0;
+    lab.change({ X0: [x, y, z] }, true); }"""
+BACK = """() => { const [lab] = window.perceptObsLabs; const [x, y, z] = lab.settings.X0;
+    lab.change({ X0: [x, y, -z] }, true);
+    lab.turn("first");
+    lab.paint();  // of the settings before, for those of now are computed beside the page
+    return [lab.late, lab.view.root.querySelector(".problem").hidden]; }"""
+
+
+def test_what_cannot_be_seen_is_said_of_present_settings_only(browser):
+    with first_screen(browser, observer_lab()) as page:
+        page.evaluate(BEHIND, [-3])
+        page.locator(".problem", has_text="starts behind the camera").wait_for()
+        page.evaluate("() => [...window.perceptObsLabs][0].turn('workbench')")
+        page.locator(".problem").first.wait_for(state="hidden")
+        page.wait_for_function("() => [...window.perceptObsLabs][0].latest.beside")
+        assert page.evaluate(BACK) == [True, True]
+
+
+def test_a_picture_has_whole_pixels(browser):
+    """A part of one would move lines, and not the axes that are drawn below them once for many pictures."""
+    with first_screen(browser, observer_lab()) as page:
+        resized = """() => { const [{ first }] = window.perceptObsLabs; first.image.resize(300.4, 200.6);
+            return first.image.size; }"""
+        assert page.evaluate(resized) == {"width": 300, "height": 201}

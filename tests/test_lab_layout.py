@@ -15,8 +15,8 @@ LABS = {
     "points": lambda: points_lab(duration=30.0),
 }
 NOTEBOOK = {"width": 848, "height": 679}
-SIZES = [NOTEBOOK, {"width": 1000, "height": 700}, {"width": 1280, "height": 800}]
 """Size of an output in JupyterLab whose window has 1280 x 800 pixels, with its file browser open."""
+SIZES = [NOTEBOOK, {"width": 1000, "height": 700}, {"width": 1280, "height": 800}]
 
 AMONG = """(height) => {
     for (const place of ["before", "after"]) {
