@@ -30,7 +30,6 @@ from percept_obs.observers import (
 )
 from percept_obs.points import FirstSight, PointsForm, PointsScenario, luenberger
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios, seen_on
-from percept_obs.recording.derivatives import Neighbours, Quadratic, SmoothingSpline
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.pose_files import read_euroc, read_tum
 from percept_obs.recording.poses import Poses, rigid_from_poses
@@ -76,7 +75,6 @@ __all__ = [
     "Gaussian",
     "ImagingSurface",
     "Motion",
-    "Neighbours",
     "NotAffine",
     "Observer",
     "PartitionedSystem",
@@ -85,12 +83,10 @@ __all__ = [
     "PointsForm",
     "PointsScenario",
     "Poses",
-    "Quadratic",
     "Recording",
     "Review",
     "Run",
     "Scenario",
-    "SmoothingSpline",
     "StructureAndMotion",
     "TooMuchWork",
     "Uniform",

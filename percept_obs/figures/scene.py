@@ -111,9 +111,9 @@ _TRUTH = "truth"
 """Label of the path that the others are compared with."""
 
 
-@figure("there are no paths, their times differ, or the axis is none of 0, 1 and 2")
+@figure("there are no paths, one does not last as long as the truth, or the axis is none of 0, 1 and 2")
 def velocities(paths: Mapping[str, CameraPath], axis: int = 0, ax: Axes | None = None) -> Drawing:
-    """Velocity along one of the camera's own axes, as several derivatives of the same poses have it.
+    """Velocity along one of the camera's own axes, by several paths of the same camera.
 
     Parameters
     ----------
@@ -124,39 +124,38 @@ def velocities(paths: Mapping[str, CameraPath], axis: int = 0, ax: Axes | None =
 
     Examples
     --------
-    >>> from percept_obs import Neighbours, Quadratic, figures, read_tum
+    >>> from percept_obs import figures, read_tum
     >>> from percept_obs.recording.worked import worked_folder
     >>> poses = read_tum(worked_folder() / "poses.txt")
-    >>> paths = {"narrow": poses.path(Quadratic(0.1)), "neighbours": poses.path(Neighbours())}
-    >>> print(figures.velocities(paths).text.split(". ")[1])
-    narrow: from -0.226 to 0.226
+    >>> print(figures.velocities({"smoothed": poses.path()}).text.split(". ")[1])
+    smoothed: from -0.226 to 0.226
 
     See Also
     --------
     percept_obs.rigid_from_poses : The motion from poses.
     """
     if not paths or not all(isinstance(path, CameraPath) for path in paths.values()):
-        raise ValueError(f"paths are needed, each with a label, not {paths!r}; poses.path(derivative) makes one")
-    time = next(iter(paths.values())).time
-    if not all(np.array_equal(path.time, time) for path in paths.values()):
-        raise ValueError("the paths have different times; draw derivatives of the same poses")
+        raise ValueError(f"paths are needed, each with a label, not {paths!r}; poses.path() makes one")
     if axis not in (0, 1, 2):
         raise ValueError(f"the axis is {axis!r}; it must be 0, 1 or 2")
     ax = canvas(ax, 2.6)
-    elapsed, name = time - time[0], "xyz"[axis]
+    true, name = paths.get(_TRUTH), "xyz"[axis]
+    shown = true or next(iter(paths.values()))
+    begin, length = shown.time[0], np.ptp(shown.time)
     ax.set_xlabel("time (s)")
     ax.set_ylabel(f"velocity along {name} (m/s)")
-    ax.set_xlim(elapsed[0], elapsed[-1])
-    yield f"Velocity of the camera along its {name} axis in m/s, over {elapsed[-1]:.3g} s."
-    others = {label: path.velocity[:, axis] for label, path in paths.items() if label != _TRUTH}
-    true = paths[_TRUTH].velocity[:, axis] if _TRUTH in paths else None
-    for number, (label, values) in enumerate(others.items()):
+    ax.set_xlim(0, length)
+    yield f"Velocity of the camera along its {name} axis in m/s, over {length:.3g} s."
+    for number, (label, path) in enumerate((label, path) for label, path in paths.items() if label != _TRUTH):
         style = {key: value for key, value in look.style(number).items() if key != "marker"}
-        ax.plot(elapsed, values, label=label, linewidth=1.3, **style)
-        off = "" if true is None else f", off by {np.sqrt(np.mean((values - true) ** 2)):.2g} m/s, root mean square"
-        yield f"{label}: {describe.span(values)}{off}."
+        ax.plot(path.time - begin, path.velocity[:, axis], label=label, linewidth=1.3, **style)
+        off = ""
+        if true is not None:
+            wrong = (path.at(true.time).velocity - true.velocity)[:, axis]
+            off = f", off by {np.sqrt(np.mean(wrong**2)):.2g} m/s, root mean square"
+        yield f"{label}: {describe.span(path.velocity[:, axis])}{off}."
     if true is not None:
-        ax.plot(elapsed, true, **look.TRUTH)
-        yield f"The truth: {describe.span(true)}."
+        ax.plot(true.time - begin, true.velocity[:, axis], **look.TRUTH)
+        yield f"The truth: {describe.span(true.velocity[:, axis])}."
     legend_above(ax)
     return [ax]

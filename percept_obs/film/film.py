@@ -118,7 +118,7 @@ class Film(Footage):
     def observer(self) -> Observer:
         """Extended Kalman filter of depth with the noise of this film."""
         form = PerspectiveSystem(self.motion, self.recordings[0].imaging_surface).measure("y1", "y2")
-        variance = float(np.median([each.noise_variance for each in self if each.noise_variance is not None]))
+        variance = float(np.median([each.effective_variance for each in self if each.effective_variance is not None]))
         return ekf(form, noise_variance=variance, hidden_variance=(1 / self.depth) ** 2)
 
     @cached_property

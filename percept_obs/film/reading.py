@@ -17,9 +17,9 @@ from percept_obs.film.sighting import SHORTEST_TRACK, Sighting, sight
 from percept_obs.film.triangulation import triangulate
 from percept_obs.film.video import Video, open_film
 from percept_obs.recording import Recording
-from percept_obs.recording.derivatives import Derivative
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.recording.poses import USUAL, CameraPath, Poses
+from percept_obs.recording.poses import CameraPath, Poses
+from percept_obs.recording.smoother import FEWEST as FEWEST_POSES
 from percept_obs.recording.text_table import PathLike
 from percept_obs.recording.track_table import runs
 from percept_obs.system.surfaces import pinhole
@@ -56,7 +56,6 @@ def read_film(
     board: Board | PathLike | None = None,
     camera: PixelCamera | None = None,
     poses: Poses | None = None,
-    derivative: Derivative = USUAL,
 ) -> Film:
     """Read a film of a printed board and of things at rest around it.
 
@@ -70,8 +69,6 @@ def read_film(
         In pixels of the upright film; found from the board when left out.
     poses : Poses, optional
         Of the camera, by the film's clock, for a film without a board; a camera is then needed.
-    derivative : Neighbours, Quadratic or SmoothingSpline
-        Of the poses.
 
     Returns
     -------
@@ -123,7 +120,7 @@ def read_film(
         seen = find_poses(sighting.time, sighting.corners, places, camera)
         poses = seen.poses
     assert camera is not None
-    travelled = _path(poses, derivative)
+    travelled = _path(poses)
     doubt = _doubt(faults)
     found = [*_corners(sighting, printed, camera, travelled)] if seen else []
     found += _others(sighting, camera, travelled)
@@ -195,22 +192,25 @@ def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
         )
 
 
-def _path(poses: Poses, derivative: Derivative) -> CameraPath:
-    """Return smoothed poses and velocities of each part without a gap that is long enough for the derivative."""
+def _path(poses: Poses) -> CameraPath:
+    """Return smoothed poses and velocities of each part without a gap that is long enough."""
     far = np.linalg.norm(np.diff(poses.position, axis=0), axis=1)
     jumps = 1 + np.flatnonzero(far > np.maximum(JUMP * np.median(far), FASTEST * np.diff(poses.time)))  # as at a cut
     whole = np.split(np.arange(len(poses.time)), jumps)
-    parts = [part for each in whole for part in runs(poses.time, each, GAP) if len(part) >= derivative.fewest]
+    parts = [part for each in whole for part in runs(poses.time, each, GAP) if len(part) >= FEWEST_POSES]
     if not parts:
         raise ValueError(
             f"the poses have gaps of more than {GAP:g} s everywhere; keep the board in the picture while you move"
         )
-    found = [Poses(poses.time[part], poses.position[part], poses.orientation[part]).path(derivative) for part in parts]
+    found = [Poses(poses.time[part], poses.position[part], poses.orientation[part]).path() for part in parts]
+    longest = max(found, key=lambda each: len(each.time))
+    assert longest.errors is not None
     return CameraPath(
         *(
             np.concatenate([getattr(each, name) for each in found])
             for name in ("time", "position", "orientation", "velocity", "angular_velocity")
-        )
+        ),
+        replace(longest.errors, poses=poses),
     )
 
 

@@ -269,12 +269,12 @@ def _deviations(covariances: Array) -> Array:
 def _noise(recording: Recording, form: PartitionedSystem, variance: ArrayLike | None) -> Array:
     """Covariance of the noise, shape (1, m, m) or (K, m, m)."""
     m, count = len(form.measured), len(recording.time)
-    if variance is None and not recording.noise_variance:
+    if variance is None and not recording.effective_variance:
         raise ValueError(
             f"the recording's noise variance is {recording.noise_variance}, and without noise there is no bound; give "
             "noise_variance, or record with noise: Camera(noise=Gaussian(0.01))"
         )
-    values = np.asarray(recording.noise_variance if variance is None else variance, dtype=float)
+    values = np.asarray(recording.effective_variance if variance is None else variance, dtype=float)
     if values.ndim < 2 and values.shape in ((), (m,)):
         values = np.diag(np.broadcast_to(values, m))
     if values.shape not in ((m, m), (count, m, m)):

@@ -274,7 +274,7 @@ def how_observable(
     """
     form = matching_form(system, recording)
     window = min(USUAL_WINDOW, float(recording.elapsed[-1]) / 4) if window is None else window
-    variance = noise_variance if noise_variance is not None else recording.noise_variance or NOISE_VARIANCE
+    variance = noise_variance if noise_variance is not None else recording.effective_variance or NOISE_VARIANCE
     error, canonical = error_gramian(recording, form, window), not form.culprits
     return Observability(
         form,

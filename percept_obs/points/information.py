@@ -48,7 +48,7 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
             weight = 1 / np.where(seen, depth, 1.0)
         free = m * int(seen.sum()) - form.states
         residual = product[-1, -1] + 2 * x @ b + x @ M @ x
-        known_noise = math.sqrt(recording.noise_variance or 0.0)
+        known_noise = math.sqrt(recording.effective_variance or 0.0)
         noise = max(math.sqrt(max(residual, 0.0) / free), finest, known_noise) if free > 0 else math.nan
         if free < 1 or not (depth[seen] > 0).all():
             return x, math.inf, np.full(m, noise), 0.0

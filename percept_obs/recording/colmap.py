@@ -15,9 +15,8 @@ import numpy as np
 
 from percept_obs.compile import Array, Indices
 from percept_obs.recording import Recording
-from percept_obs.recording.derivatives import Derivative
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.recording.poses import USUAL, Poses
+from percept_obs.recording.poses import Poses
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
 from percept_obs.recording.track_table import refuse_parts, tracks_of_points
 from percept_obs.system.surfaces import pinhole
@@ -74,7 +73,6 @@ class ColmapModel:
         self,
         name: str = "COLMAP",
         pixel_sigma: float | None = None,
-        derivative: Derivative = USUAL,
         gap: float = math.inf,
         shortest: float = 0.0,
     ) -> tuple[Recording, ...]:
@@ -84,11 +82,11 @@ class ColmapModel:
         """
         pd = load_pandas()
         refuse_parts(gap, shortest)
-        path, surface = self.poses.path(derivative), pinhole()
+        path, surface = self.poses.path(), pinhole()
         variance = None if pixel_sigma is None else self.camera.variance(pixel_sigma)
         image, place = self.seen.T
-        outputs, time = self.camera.image(self.pixels), path.time[image]
-        truths = surface.project(path.rotation[image].inv().apply(self.points[place] - path.position[image]))
+        outputs, time, there = self.camera.image(self.pixels), self.poses.time[image], path.at(self.poses.time)
+        truths = surface.project(there.rotation[image].inv().apply(self.points[place] - there.position[image]))
         truths[truths[:, -1] <= 0] = np.nan  # a wrong match
         labels, known = pd.Categorical([str(self.numbers[k]) for k in place]), np.ones(len(time), dtype=bool)
         fields: dict[str, Any] = {"names": ("y1", "y2"), "view": surface, "motion": path.motion}

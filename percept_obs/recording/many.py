@@ -1,4 +1,4 @@
-"""Scenarios with other numbers, and the transitions of many constant motions."""
+"""Scenarios with other numbers."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from types import MappingProxyType
 
 import numpy as np
 
-from percept_obs.compile import Array
-from percept_obs.recording.path import REACH, exponential
 from percept_obs.recording.simulation import Scenario
 from percept_obs.system.signal import Signal
 from percept_obs.system.surfaces import POINT
@@ -31,16 +29,3 @@ def with_numbers(scenario: Scenario, **values: float) -> Scenario:
     surface = replace(surface, values=MappingProxyType({s: now[s.name] for s in surface.values}))
     position = [now[symbol.name] for symbol in POINT]
     return replace(scenario, motion=motion, position=position, surface=surface)
-
-
-def transitions(A: Array, b: Array, length: float) -> Array:
-    """Return maps [M | v] of a position to the one `length` seconds later, shape (D, 3, 4), under constant motions."""
-    whole = np.zeros((len(A), 4, 4))  # of (X, 1), so that b is a part of the matrix
-    whole[:, :3, :3], whole[:, :3, 3] = length * A, length * b
-    fastest = float(np.abs(whole).sum(axis=1).max(initial=0.0))
-    halvings = max(0, int(np.ceil(np.log2(max(fastest / REACH, 1.0)))))
-    with np.errstate(over="ignore", invalid="ignore"):
-        across = exponential(whole / 2**halvings)
-        for _ in range(halvings):
-            across = across @ across
-    return np.ascontiguousarray(across[:, :3])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array
-from percept_obs.recording.derivatives import Derivative, Quadratic
+from percept_obs.recording.plausibility import Unlikely
+from percept_obs.recording.pose_errors import PoseErrors
+from percept_obs.recording.smoother import FEWEST, Smoothed, smooth, smooth_turns
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import readonly
-from percept_obs.validation import checked, numbers
+from percept_obs.validation import checked, numbers, warn
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -21,8 +23,14 @@ if TYPE_CHECKING:
 UNIT = 0.01
 """Largest difference of a quaternion's length, or of R^T R, from 1: files are rounded."""
 
-USUAL = Quadratic(0.1)
-"""Default derivative, a compromise for a camera carried by hand."""
+LONGEST_ROW = 1 / 120
+"""Seconds between two rows of a path at most: between its rows a motion is linear, which loses its fast part."""
+
+NEAREST = 1e-3
+"""Mean steps to the next pose, below which both have one place in the smoother: nearer ones tell no velocity."""
+
+REPEATED = 0.25
+"""Share of poses that are the one before them again, from which on somebody has repeated them."""
 
 
 @checked
@@ -38,11 +46,17 @@ class Poses:
         Places p in metres.
     orientation : array of shape (K, 4) or (K, 3, 3)
         R as quaternions (x, y, z, w) of length 1, or as matrices; kept as quaternions.
+    sigma : pair of float
+        Standard deviations of a position's coordinates in metres and of a rotation's angles in radians, at least;
+        larger ones are found from the poses.
+    correlated : float
+        Seconds over which these errors stay alike, as those of poses that a filter has smoothed; 0 for white noise.
 
     Raises
     ------
     ValueError
-        If shapes do not fit, values are not finite, times do not increase, or an orientation is no rotation.
+        If shapes do not fit, values are not finite, times do not increase, an orientation is no rotation, or a
+        deviation is negative.
 
     See Also
     --------
@@ -62,9 +76,19 @@ class Poses:
     time: Array
     position: Array
     orientation: Array
+    sigma: tuple[float, float] = (0.0, 0.0)
+    correlated: float = 0.0
 
     def __post_init__(self) -> None:
-        time, position, turns = (numbers(each, f"the poses' {name}") for name, each in vars(self).items())
+        time, position, turns = (
+            numbers(getattr(self, name), f"the poses' {name}") for name in ("time", "position", "orientation")
+        )
+        known = numbers([*self.sigma, self.correlated], "sigma and correlated")
+        if known.shape != (3,) or not (np.isfinite(known) & (known >= 0)).all():
+            raise ValueError(
+                f"sigma is {self.sigma} and correlated is {self.correlated}; give a deviation in metres and one in "
+                "radians, and seconds, none of them negative"
+            )
         if time.ndim != 1 or len(time) < 2:
             raise ValueError(f"the poses have times of shape {time.shape}; expected a list of at least two seconds")
         expected: dict[str, list[tuple[int, ...]]] = {"time": [()], "position": [(3,)], "orientation": [(4,), (3, 3)]}
@@ -113,29 +137,106 @@ class Poses:
         """
         mount = Poses(np.arange(2.0), np.tile(position, (2, 1)), np.stack([orientation, orientation]))
         places = self.position + self.rotation.apply(mount.position[:1].copy())
-        return Poses(self.time, places, (self.rotation * mount.rotation[0]).as_quat())
+        return replace(self, position=places, orientation=(self.rotation * mount.rotation[0]).as_quat())
 
-    def path(self, derivative: Derivative = USUAL) -> CameraPath:
-        """Return the poses with their velocities.
-
-        Parameters
-        ----------
-        derivative : Neighbours, Quadratic or SmoothingSpline
+    def path(self) -> CameraPath:
+        """Return smoothed poses with their velocities, at the times of the poses and at least 120 times a second.
 
         Raises
         ------
         ValueError
-            If there are too few poses for it.
-        """
-        if len(self.time) < derivative.fewest:
-            raise ValueError(f"{len(self.time)} poses are too few for {derivative!r}; it needs {derivative.fewest}")
-        position, orientation, velocity, turning = derivative.of(self.time, self.position, self.orientation)
-        smoothed = Poses(self.time, position, orientation)
-        return CameraPath(self.time, position, smoothed.orientation, smoothed.rotation.inv().apply(velocity), turning)
+            If there are fewer than five poses.
 
-    def motion(self, derivative: Derivative = USUAL) -> Motion:
+        Warns
+        -----
+        Unlikely
+            If many poses are the ones before them again.
+
+        Notes
+        -----
+        Each coordinate of the position, and of the angle turned, is a random walk of its third derivative, seen with
+        white noise.  The most probable path is a natural quintic spline; how smooth it is and how large the noise is
+        follow from the poses, by their likelihood.  C. F. Ansley and R. Kohn, Estimation, filtering, and smoothing
+        in state space models with incompletely specified initial conditions, The Annals of Statistics 13(4), 1985.
+        """
+        time, position, rotation = self._apart
+        moving = (np.ptp(position, axis=0) > 0).any()
+        again = (np.diff(position, axis=0) == 0).all(axis=1) & (np.diff(rotation.as_quat(), axis=0) == 0).all(axis=1)
+        if moving and again.mean() > REPEATED:
+            warn(
+                Unlikely(
+                    f"{again.sum()} of {len(time)} poses are the ones before them again, so that the camera seems to "
+                    "move in steps; leave the repeated ones out"
+                )
+            )
+        step = float(time[-1] - time[0]) / (len(time) - 1)
+        floors = [sigma**2 * max(1.0, 2 * self.correlated / step) for sigma in self.sigma]
+        placed = smooth(time, position, floors[0])
+        turned, turning = smooth_turns(time, rotation, floors[1])
+        errors = PoseErrors(self, placed.error, placed.memory, turning.error, turning.memory)
+        return _densely(time, placed, turned, turning, errors)
+
+    @cached_property
+    def _apart(self) -> tuple[Array, Array, Rotation]:
+        """Times, positions and rotations without poses that are too near to the one before them."""
+        if len(self.time) < FEWEST:
+            raise ValueError(f"{len(self.time)} poses are too few for velocities; {FEWEST} are needed")
+        near = NEAREST * float(self.time[-1] - self.time[0]) / (len(self.time) - 1)
+        rows = [0]
+        if np.diff(self.time).min() > near:
+            return self.time, self.position, self.rotation
+        for row, time in enumerate(self.time.tolist()):
+            if time - self.time[rows[-1]] > near:
+                rows.append(row)
+        return self.time[rows], self.position[rows], self.rotation[rows]
+
+    def motion(self) -> Motion:
         """Return the motion of points at rest in the camera's frame, with the velocities of `path`."""
-        return self.path(derivative).motion
+        return self.path().motion
+
+    def judge(self, motion: Motion) -> Motion:
+        """Return a motion with other velocities of this camera, judged by these poses wherever it is used.
+
+        Examples
+        --------
+        Velocities that an encoder gives, a tenth too small, make distances a tenth too short:
+
+        >>> import numpy as np
+        >>> from percept_obs import Recording, pinhole, rigid
+        >>> t = np.linspace(0, 2, 61)
+        >>> poses = Poses(t, np.outer(np.sin(3 * t), [0.1, 0, 0]), np.stack([np.eye(3)] * 61))
+        >>> v = np.outer(0.27 * np.cos(3 * t), [1, 0, 0])
+        >>> motion = poses.judge(rigid(np.zeros((61, 3)), v, np.zeros(3), times=t))
+        >>> seen = Recording(t, np.zeros((61, 2)), ("y1", "y2"), pinhole(), motion, distances={"laser": 2 + 0 * t})
+        >>> print(f"{seen.landmark.bias:.1%}")
+        -10.0%
+        """
+        return replace(motion, errors=self.path().errors)
+
+
+def _densely(time: Array, placed: Smoothed, turned: Rotation, turning: Smoothed, errors: PoseErrors) -> CameraPath:
+    """Return the path at some times and at evenly spaced ones between them, by Hermite's polynomials."""
+    from scipy.interpolate import CubicHermiteSpline
+    from scipy.spatial.transform import Rotation
+
+    steps = np.diff(time)
+    parts = np.ceil(steps / LONGEST_ROW * (1 - 1e-9)).astype(int)
+    row = np.repeat(np.arange(len(steps)), parts)
+    share = (np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[row]
+    times = np.append(time[row] + share * steps[row], time[-1])
+    if (parts == 1).all():
+        position, rotation, speed, rate = placed.value, turned, placed.rate, turning.rate
+    else:
+        position = CubicHermiteSpline(time, placed.value, placed.rate)(times)
+        speed = CubicHermiteSpline(time, placed.rate, placed.acceleration)(times)
+        rate = CubicHermiteSpline(time, turning.rate, turning.acceleration)(times)
+        turn, w = (turned[:-1].inv() * turned[1:]).as_rotvec(), turning.rate
+        end = w[1:] + np.cross(turn, w[1:]) / 2 + np.cross(turn, np.cross(turn, w[1:])) / 12  # the turn's rate there
+        u, h = share[:, None], steps[row, None]
+        part = u**2 * (3 - 2 * u) * turn[row] + h * u * (1 - u) * ((1 - u) * w[:-1][row] - u * end[row])
+        between = turned[row] * Rotation.from_rotvec(part)
+        rotation = Rotation.concatenate([between, turned[-1:]])
+    return CameraPath(times, position, rotation.as_quat(), rotation.inv().apply(speed), rate, errors)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,9 +246,11 @@ class CameraPath:
     Parameters
     ----------
     time, position, orientation : arrays of shape (K,), (K, 3), (K, 4)
-        As in `Poses`, smoothed if the derivative smooths.
+        As in `Poses`, smoothed.
     velocity, angular_velocity : arrays of shape (K, 3)
         v in m/s and w in rad/s, along the camera's axes.
+    errors : PoseErrors, optional
+        Errors of the poses that it was made from.
 
     See Also
     --------
@@ -157,8 +260,9 @@ class CameraPath:
     --------
     >>> import numpy as np
     >>> upright = np.tile([0, 0, 0, 1.0], (5, 1))
-    >>> Poses(np.arange(5.0), np.zeros((5, 3)), upright).path().sees([[0.1, 0, 2]])[4].tolist()
-    [[0.1, 0.0, 2.0]]
+    >>> path = Poses(np.arange(5.0), np.zeros((5, 3)), upright).path()
+    >>> path.at([4.0]).sees([[0.1, 0, 2]]).tolist()
+    [[[0.1, 0.0, 2.0]]]
     """
 
     time: Array
@@ -166,6 +270,7 @@ class CameraPath:
     orientation: Array
     velocity: Array
     angular_velocity: Array
+    errors: PoseErrors | None = None
 
     @cached_property
     def rotation(self) -> Rotation:
@@ -175,7 +280,25 @@ class CameraPath:
     @cached_property
     def motion(self) -> Motion:
         """Motion of a point at rest in the camera's frame: X' = -v - w x X, so `rigid` takes -w."""
-        return rigid(-self.angular_velocity, self.velocity, np.zeros(3), times=self.time)
+        motion = rigid(-self.angular_velocity, self.velocity, np.zeros(3), times=self.time)
+        return replace(motion, errors=self.errors)
+
+    def at(self, times: ArrayLike) -> CameraPath:
+        """Return the path at some times in seconds, shape (T,); ValueError if one lies before or after it."""
+        from scipy.interpolate import CubicHermiteSpline
+        from scipy.spatial.transform import Slerp
+
+        times = numbers(times, "the times", "T")
+        if times.size and not (self.time[0] <= times.min() and times.max() <= self.time[-1]):
+            raise ValueError(
+                f"the path is known from {self.time[0]:.6g} to {self.time[-1]:.6g} s, but is asked for from "
+                f"{times.min():.6g} to {times.max():.6g} s"
+            )
+        place = CubicHermiteSpline(self.time, self.position, self.rotation.apply(self.velocity))
+        rates = np.hstack([self.velocity, self.angular_velocity])
+        rates = np.stack([np.interp(times, self.time, column) for column in rates.T], axis=-1)
+        turns = Slerp(self.time, self.rotation)(times).as_quat()
+        return CameraPath(times, place(times), turns, rates[:, :3], rates[:, 3:], self.errors)
 
     def sees(self, places: ArrayLike) -> Array:
         """Return points at rest in the world, shape (n, 3), in the camera's frame, in metres, shape (K, n, 3)."""
@@ -189,7 +312,8 @@ def rigid_from_poses(
     positions: ArrayLike,
     orientations: ArrayLike,
     frame: Literal["world", "camera"] = "world",
-    derivative: Derivative = USUAL,
+    sigma: tuple[float, float] = (0.0, 0.0),
+    correlated: float = 0.0,
 ) -> Motion:
     """Return the rigid motion of points at rest, from the poses of the camera that sees them.
 
@@ -206,8 +330,8 @@ def rigid_from_poses(
     frame : "world" or "camera"
         "world" for poses of the camera in the world, X_world = R X_camera + p, as files of trajectories have them;
         "camera" for poses of the world in the camera's frame, X_camera = R X_world + p, as calibration has them.
-    derivative : Neighbours, Quadratic or SmoothingSpline
-        For the velocities; a parabola over 0.1 s to either side when left out.
+    sigma, correlated : pair of float, float
+        Deviations of the poses, and how long their errors stay alike, as in `Poses`.
 
     Returns
     -------
@@ -236,13 +360,12 @@ def rigid_from_poses(
     """
     if frame not in ("world", "camera"):
         raise ValueError(f"the frame {frame!r} is none of 'world' and 'camera'")
-    poses = Poses(
-        numbers(times, "the times"), numbers(positions, "the positions"), numbers(orientations, "the orientations")
-    )
+    arrays = ((times, "the times"), (positions, "the positions"), (orientations, "the orientations"))
+    poses = Poses(*(numbers(values, name) for values, name in arrays), sigma, correlated)
     if frame == "camera":
         back = poses.rotation.inv()
-        poses = Poses(poses.time, -back.apply(poses.position.copy()), back.as_quat())
-    return poses.motion(derivative)
+        poses = replace(poses, position=-back.apply(poses.position.copy()), orientation=back.as_quat())
+    return poses.motion()
 
 
 def _quaternions(turns: Array) -> Array:

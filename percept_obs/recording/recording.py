@@ -11,9 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from percept_obs.compile import Array, Flags
+from percept_obs.compile import Array, Flags, vectorised
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.plausibility import warn_if_implausible
+from percept_obs.recording.pose_errors import VirtualLandmark
+from percept_obs.recording.reckoning import point_on_rays, reckon
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
 from percept_obs.recording.track_table import fields_of_recordings, runs
 from percept_obs.system.motion import Motion
@@ -73,7 +75,7 @@ class Recording:
     signal : function of times, optional
         The outputs without noise at any time, of shape (T, m) or (T, p, m), if they are known.
     noise_variance : float, optional
-        Variance of the noise in each output.
+        Variance of the noise in each output; `effective_variance` adds that of the poses behind the motion.
     distances : mapping of names to arrays of shape (K,) or (K, p), optional
         Independent measurements of the depth or range in metres; NaN where there is none.
     source : str
@@ -251,6 +253,44 @@ class Recording:
         if self.truth is None:
             raise ValueError("the recording has no truth to compare with")
         return 1 / self.view.inverse(self.truth)
+
+    @cached_property
+    def depth(self) -> float:
+        """Typical distance in metres: the median of the true ones, of measured ones, or of the place where rays meet.
+
+        Infinite where none of them is known.
+        """
+        known = [] if self.truth is None else [self.distance]
+        for values in (*known, *self.distances.values()):
+            if np.isfinite(values).any():
+                return float(np.nanmedian(values))
+        if not isinstance(self.view, ImagingSurface) or len(self.names) < len(self.view.image_coordinates):
+            return math.inf
+        rows, surface = np.flatnonzero(self.seen), self.view
+        ray = vectorised(surface.image_coordinates, surface.ray, surface.values)
+        rays = np.stack(ray(*self.outputs[rows].T), axis=-1)
+        rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+        point, along, _ = point_on_rays(rays, reckon(self.motion, self.time)[rows])
+        return float(np.median(along) / point[3]) if point[3] > 0 else math.inf
+
+    @cached_property
+    def effective_variance(self) -> float | None:
+        """Variance of white noise as bad as that of the images and of the poses behind the motion together.
+
+        It is what filters, bounds, trust and diagnosis take; None where the `noise_variance` is not known.  All points
+        of a camera share the errors of its poses, so that a mean over points is no more certain of them.
+        """
+        if self.noise_variance is None or self.motion.errors is None:
+            return self.noise_variance
+        interval = float(np.median(self.intervals))
+        return self.noise_variance + float(self.motion.errors.image_variance(self.depth, interval))
+
+    @cached_property
+    def landmark(self) -> VirtualLandmark:
+        """Judgement of the motion by the poses that it comes from, with a virtual landmark at the typical distance."""
+        if self.motion.errors is None or not math.isfinite(self.depth):
+            return VirtualLandmark(0.0, 0.0)
+        return self.motion.errors.landmark(self.motion, self.depth, float(self.time[0]), float(self.time[-1]))
 
     def reference(self, name: str) -> Array:
         """Return the true distances, "truth", or measured ones by name, in metres, shape (K,) or (K, p)."""

@@ -17,7 +17,7 @@ from percept_obs.compile.integrator import step_grid
 from percept_obs.recording.camera import Camera, Scene, Seed, seeded
 from percept_obs.recording.path import constant_path, lowest_between, times_of, varying_path
 from percept_obs.recording.recording import Recording
-from percept_obs.system.motion import TIME, Motion, ask_for_degrees
+from percept_obs.system.motion import Motion, ask_for_degrees, coefficients
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 from percept_obs.system.view import View
 from percept_obs.validation import checked
@@ -253,11 +253,3 @@ def point_in_motion(A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, parameters: tu
 @lru_cache(maxsize=64)
 def _flow(equations: Equations) -> Callable[..., list[float]]:
     return right_hand_side(equations, {})
-
-
-def coefficients(motion: Motion, known: Array) -> tuple[Array, Array]:
-    """Return A and b, shapes (T, 3, 3) and (T, 3), for values of the motion's parameters, shape (T, p)."""
-    columns = known.T if known.shape[1] else [np.zeros(len(known))]
-    symbols = motion.parameters or (TIME,)
-    rows = np.stack(vectorised(symbols, (*motion.A, *motion.b))(*columns), axis=-1)
-    return rows[:, :9].reshape(-1, 3, 3), rows[:, 9:]

@@ -20,7 +20,6 @@ from scipy.spatial.transform import Rotation
 
 from percept_obs.compile import Array, Flags
 from percept_obs.recording import Recording, Sighting
-from percept_obs.recording.derivatives import Derivative, Quadratic
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.plausibility import Unlikely
 from percept_obs.recording.poses import CameraPath, Poses
@@ -32,7 +31,6 @@ from percept_obs.validation import checked, numbers, warn
 NOT_SEEN = -1.0
 SHORTEST_TRACK = 3.0  # s
 LONGEST_GAP = 0.30  # s, between two samples of one track
-DERIVATIVE = Quadratic(0.30)  # of the camera's poses
 
 VARIABLES = ("t", "y_k_j", "r_i_vk_i", "theta_vk_i", "C_c_v", "rho_v_c_v", "fu", "fv", "cu", "cv", "b")
 LANDMARKS = "rho_i_pj_i"
@@ -82,7 +80,7 @@ class StereoTracks:
     @property
     def time(self) -> Array:
         """Seconds, increasing, not evenly spaced, shape (K,)."""
-        return self.path.time
+        return self.poses.time
 
     @property
     def motion(self) -> Motion:
@@ -106,7 +104,7 @@ class StereoTracks:
         """Landmarks in the camera's frame, from the smoothed poses, in metres, shape (K, L, 3), if they are known."""
         if self.landmarks is None:
             raise ValueError(f"the file has no {LANDMARKS}, so it is not known where the landmarks are")
-        return self.path.sees(self.landmarks)
+        return self.path.at(self.time).sees(self.landmarks)
 
     def recording(
         self,
@@ -147,7 +145,6 @@ class StereoTracks:
 @checked
 def read_stereo_mat(
     path: str | os.PathLike[str],
-    derivative: Derivative = DERIVATIVE,
     shortest: float = SHORTEST_TRACK,
     gap: float = LONGEST_GAP,
 ) -> StereoTracks:
@@ -157,8 +154,6 @@ def read_stereo_mat(
     ----------
     path : path
         Up to version 7 of the format.
-    derivative : Neighbours, Quadratic or SmoothingSpline
-        Of the poses.
     shortest : float
         Seconds that a track lasts at least.
     gap : float
@@ -234,7 +229,7 @@ def read_stereo_mat(
         followed[track.first : track.last + 1, track.point] = True
     images = np.where(followed[..., None], images, np.nan)
     camera = PixelCamera((fx, fy), (cx, cy))
-    return StereoTracks(poses, poses.path(derivative), images, camera, baseline, tracks, landmarks)
+    return StereoTracks(poses, poses.path(), images, camera, baseline, tracks, landmarks)
 
 
 def _tracks(time: Array, seen: Flags, shortest: float, gap: float) -> tuple[Sighting, ...]:

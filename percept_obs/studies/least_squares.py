@@ -9,8 +9,7 @@ import numpy as np
 
 from percept_obs.compile import Array, vectorised
 from percept_obs.recording import Recording
-from percept_obs.recording.many import transitions
-from percept_obs.recording.simulation import coefficients
+from percept_obs.recording.reckoning import transitions
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem

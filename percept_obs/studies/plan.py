@@ -17,8 +17,9 @@ from percept_obs.observability import cramer_rao
 from percept_obs.observers.base import Observer
 from percept_obs.observers.parts import first_seen, hats
 from percept_obs.recording import Camera, Scenario, record
-from percept_obs.recording.many import numbers_of, transitions, with_numbers
-from percept_obs.recording.simulation import LONGEST_STEP_SHARE, coefficients
+from percept_obs.recording.many import numbers_of, with_numbers
+from percept_obs.recording.reckoning import transitions
+from percept_obs.recording.simulation import LONGEST_STEP_SHARE
 from percept_obs.studies.statistics import STATISTICS, accumulated, statistics_of
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion

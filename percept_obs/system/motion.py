@@ -48,6 +48,8 @@ class Motion:
         The symbols in A and b, in the order of the signal's columns.
     signal : Signal, optional
         Values of `parameters` over time.
+    errors : PoseErrors, optional
+        Errors of the camera's poses that the signal was made from.
 
     Raises
     ------
@@ -76,6 +78,7 @@ class Motion:
     b: sp.ImmutableMatrix
     parameters: tuple[sp.Symbol, ...]
     signal: Signal | None = None
+    errors: Any = None
 
     @cached_property
     def lengths(self) -> tuple[int, ...]:
@@ -331,6 +334,14 @@ class AreTheseDegrees(UserWarning):
 
 LARGEST_TURNING = 20.0
 """Angular velocity in rad/s, three turns a second, above which degrees may have been meant."""
+
+
+def coefficients(motion: Motion, known: Array) -> tuple[Array, Array]:
+    """Return A and b, shapes (T, 3, 3) and (T, 3), for values of the motion's parameters, shape (T, p)."""
+    columns = known.T if known.shape[1] else [np.zeros(len(known))]
+    symbols = motion.parameters or (TIME,)
+    rows = np.stack(vectorised(symbols, (*motion.A, *motion.b))(*columns), axis=-1)
+    return rows[:, :9].reshape(-1, 3, 3), rows[:, 9:]
 
 
 def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:

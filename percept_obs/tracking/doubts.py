@@ -10,7 +10,7 @@ import numpy as np
 from percept_obs.compile import Array, vectorised
 from percept_obs.compile.integrator import LONGEST_STEP, by_step, instants, step, step_grid
 from percept_obs.recording import Recording
-from percept_obs.recording.simulation import coefficients
+from percept_obs.system.motion import coefficients
 from percept_obs.system.surfaces import POINT
 
 DOUBTS = (0.1, 0.01, 0.01, 0.01)

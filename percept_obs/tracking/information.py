@@ -115,7 +115,7 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
     columns = [recording.names.index(name) for name in form.measured]
     places = [unknown.index(symbol) for symbol in form.x1]
     size, measured, surface = len(unknown), len(columns), isinstance(view, ImagingSurface)
-    known_noise = (recording.noise_variance or 0.0) if surface else 0.0
+    known_noise = (recording.effective_variance or 0.0) if surface else 0.0
     at_end = recording.motion.known(recording.time[-1:])
 
     def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array, float]:

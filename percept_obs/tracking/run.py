@@ -287,12 +287,15 @@ class Run:
             return said("nowhere")
         if self.recording.doubt:
             return said("doubted", doubt=self.recording.doubt)
+        speeds = self.recording.landmark.error
+        if speeds > tolerance / 2:
+            return said("doubted", doubt=self.recording.landmark.sentence)
         if self.observer.covariance is not None:
             claims = np.sqrt(np.maximum(np.diagonal(self.covariance[-1]), 0))
-            said = partial(said, claimed=relative_deviation(view, last, claims, known))
+            said = partial(said, claimed=math.hypot(relative_deviation(view, last, claims, known), speeds))
         found, claimed = self.information, said.keywords.get("claimed")
         apart = found.disagreement(view, known)
-        widened = math.hypot(found.deviation, apart / 2)
+        widened = math.hypot(found.deviation, apart / 2, speeds)
         said = partial(said, information=replace(found, deviation=widened if apart <= tolerance else found.deviation))
         if not 2 * found.deviation <= tolerance:
             return said("vague" if found.deviation < NOTHING else "hidden")

@@ -40,7 +40,6 @@ EXAMPLES = MappingProxyType(
         "PixelCamera": "PixelCamera((720, 720), (320, 240))",
         "PointsForm": "PointsForm(affine(A, b), np.eye(3))",
         "Poses": 'read_tum("poses.txt")',
-        "Quadratic": "Quadratic(0.1)",
         "Recording": "record(scenarios.ma2005_eq35())",
         "Run": "track(recording, ibo(form))",
         "Scenario": "scenarios.ma2005_eq35()",

@@ -129,12 +129,12 @@ def _error_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
         f"{observer.name}: its error dynamics end with the eigenvalues {roots} per second; over the last {window:g} s "
         f"a small error {does}."
     ]
-    left = gains.get("noise_variance", 0.0) - (recording.noise_variance or 0.0)
+    left = gains.get("noise_variance", 0.0) - (recording.effective_variance or 0.0)
     push = left * np.array([entry[-1] for entry in entries[size**2 :]])
     if np.abs(push).max() > 0:
         name, size_of = names[order[int(np.abs(push).argmax())]], push[np.abs(push).argmax()]
         sentences.append(
             f"{observer.name}: at the end noise pushes the estimate of {name} by {size_of:.2g} per second on average; "
-            f"noise_variance takes it out where it equals the noise's variance, {recording.noise_variance or 0.0:.3g}."
+            f"noise_variance takes it out where it equals the noise's variance, {recording.effective_variance or 0.0:.3g}."
         )
     return sentences

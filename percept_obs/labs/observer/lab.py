@@ -292,7 +292,7 @@ def _seen_on(name: str, recording: Recording) -> ImagingSurface:
 
 def _gains_for(recording: Recording) -> Settings:
     """Gains of a Kalman filter in metres: the noise of a track, if it is known, and a start that suits its speed."""
-    noise = {"noise_variance": recording.noise_variance} if recording.noise_variance else {}
+    noise = {"noise_variance": recording.effective_variance} if recording.effective_variance else {}
     return noise | {"hidden_variance": recording.in_own_unit().unit ** -2}
 
 

@@ -192,7 +192,7 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     if not given:
         raise ValueError("there is no recording; give one, or several of points that one camera saw")
     several = [given[k] for k in np.unique(np.linspace(0, len(given) - 1, min(MOST, len(given))).round().astype(int))]
-    variances = [recording.noise_variance for recording in several if recording.noise_variance is not None]
+    variances = [each.effective_variance for each in several if each.effective_variance is not None]
     noise = math.sqrt(float(np.mean(variances))) if len(variances) == len(several) else None
     size = np.abs(np.concatenate([[0.0], *(recording.outputs.ravel() for recording in several)]))
     if np.nanmedian(size) > LARGEST_USUAL:

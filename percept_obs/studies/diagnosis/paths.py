@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.recording.many import transitions
-from percept_obs.recording.simulation import coefficients
+from percept_obs.recording.reckoning import transitions
 from percept_obs.studies.diagnosis.causes import MIX_UPS
-from percept_obs.system.motion import Motion
+from percept_obs.system.motion import Motion, coefficients
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicHermiteSpline

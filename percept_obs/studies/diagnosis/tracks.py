@@ -11,6 +11,7 @@ import sympy as sp
 
 from percept_obs.compile import Array, Flags, Indices, vectorised
 from percept_obs.recording import Recording
+from percept_obs.recording.reckoning import point_on_rays
 from percept_obs.studies.diagnosis.causes import CAUSES, LARGEST_OFFSET, MIX_UPS
 from percept_obs.studies.diagnosis.paths import SPINS, Path, path
 from percept_obs.system.motion import Motion
@@ -29,9 +30,6 @@ SPIKE = 12.0
 
 SMOOTH = 5e-3
 """Difference from the median of neighbours, in focal lengths, that a turn of the track explains."""
-
-REWEIGHTED = 3
-"""Times that linear equations for a point are solved, each time with the weights of the last."""
 
 FAR = 1e3
 """Image coordinate that stands for an infinite one."""
@@ -177,8 +175,7 @@ def path_of(track: Track, mix_up: str, number: Mapping[str, Array]) -> Path:
 def guess(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> tuple[Array, Array]:
     """Position (X, 1) at the beginning, but for a factor, that explains a track nearly, and directions to change it.
 
-    A sample's ray and the position are parallel, so that their cross product is 0 (the direct linear transform).
-    The three directions, shape (4, 3), are those of its singular vectors, so that a fit is well conditioned.
+    The three directions, shape (4, 3), are those that make a fit well conditioned.
     """
     surface, rows, number = track.surface, track.whole, numbers_of(wrong)
     way = path_of(track, mix_up, number)
@@ -187,16 +184,9 @@ def guess(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> tuple[Array,
         times = np.clip(track.time[rows] - float(number[OFFSET][0]), way.times[0], way.times[-1])
         rays = np.stack(ray(*(track.outputs[rows] / (1 + float(number[FOCAL][0]))).T), axis=-1)
         rays /= np.linalg.norm(rays, axis=1, keepdims=True)
-        maps = way.spline(times)
-        weight = np.linalg.norm(maps, axis=(1, 2))
-        across = np.cross(rays[:, :, None], maps, axis=1)
-        for _ in range(REWEIGHTED):  # by the distance of each position, so that angles are left and not lengths
-            vectors = np.linalg.svd((across / weight[:, None, None]).reshape(-1, 4), full_matrices=False)[2]
-            along = np.einsum("ki,kij,j->k", rays, maps, vectors[-1])
-            weight = np.maximum(np.abs(along), 1e-6 * max(float(np.abs(along).max()), 1e-6))
-        point = vectors[-1] * np.sign(np.median(along))
+        point, along, directions = point_on_rays(rays, way.spline(times))
         if point[3] > 0 and np.median(np.abs(along)) > 1e-6:
-            return point, vectors[:3].T
+            return point, directions
     first = [np.flatnonzero(column) for column in track.used.T]
     image = [track.outputs[rows[0], k] if len(rows) else 0.0 for k, rows in enumerate(first)]
     point = np.append(np.array(ray(*image), dtype=float), 0.0)

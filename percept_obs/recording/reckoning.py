@@ -1,0 +1,66 @@
+"""Dead reckoning: where the known motion takes a point, and where a point is that moves so past its images."""
+
+from __future__ import annotations
+
+import math
+from itertools import accumulate
+
+import numpy as np
+
+from percept_obs.compile import Array
+from percept_obs.recording.path import REACH, exponential
+from percept_obs.system.motion import Motion, coefficients
+
+LONGEST = 1 / 120
+"""Seconds of a step at most; in each step the motion is as in its middle."""
+
+MOST_STEPS = 20_000
+"""Steps at most, so that hours take no longer than minutes."""
+
+REWEIGHTED = 3
+"""Times that linear equations for a point are solved, each time with the weights of the last."""
+
+
+def reckon(motion: Motion, times: Array) -> Array:
+    """Return the maps of (X, 1) from the first of some times to each of them, shape (K, 4, 4)."""
+    steps = np.diff(times)
+    longest = max(LONGEST, float(times[-1] - times[0]) / MOST_STEPS)
+    parts = np.ceil(steps / longest * (1 - 1e-9)).astype(int)
+    row = np.repeat(np.arange(len(steps)), parts)
+    length = steps[row] / parts[row]
+    inside = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    rows = motion.known(times[row] + (inside + 0.5) * length)
+    A, b = coefficients(motion, np.broadcast_to(rows, (len(row), rows.shape[1])))
+    maps = np.tile(np.eye(4), (len(row), 1, 1))
+    maps[:, :3] = transitions(A * length[:, None, None], b * length[:, None], 1.0)
+    whole = np.stack([*accumulate(maps, lambda before, step: step @ before, initial=np.eye(4))])
+    return whole[np.concatenate([[0], np.cumsum(parts)])]
+
+
+def transitions(A: Array, b: Array, length: float) -> Array:
+    """Return maps [M | v] of a position to the one `length` seconds later, shape (D, 3, 4), under constant motions."""
+    whole = np.zeros((len(A), 4, 4))  # of (X, 1), so that b is a part of the matrix
+    whole[:, :3, :3], whole[:, :3, 3] = length * A, length * b
+    fastest = float(np.abs(whole).sum(axis=1).max(initial=0.0))
+    halvings = max(0, int(np.ceil(np.log2(max(fastest / REACH, 1.0)))))
+    with np.errstate(over="ignore", invalid="ignore"):
+        across = exponential(whole / 2**halvings)
+        for _ in range(halvings):
+            across = across @ across
+    return np.ascontiguousarray(across[:, :3])
+
+
+def point_on_rays(rays: Array, maps: Array) -> tuple[Array, Array, float]:
+    """Return the (X, 1), but for a factor, whose maps lie on rays, its distances along them, and directions around it.
+
+    A ray, shape (K, 3) and of length 1, and the position are parallel, so that their cross product is 0 (the direct
+    linear transform).  The directions, shape (4, 3), are those of its singular vectors.
+    """
+    weight = np.linalg.norm(maps, axis=(1, 2))
+    across = np.cross(rays[:, :, None], maps, axis=1)
+    for _ in range(REWEIGHTED):  # by the distance of each position, so that angles are left and not lengths
+        vectors = np.linalg.svd((across / weight[:, None, None]).reshape(-1, 4), full_matrices=False)[2]
+        along = np.einsum("ki,kij,j->k", rays, maps, vectors[-1])
+        weight = np.maximum(np.abs(along), 1e-6 * max(float(np.abs(along).max()), 1e-6))
+    sign = math.copysign(1.0, float(np.median(along)))
+    return vectors[-1] * sign, along * sign, vectors[:3].T
