@@ -175,14 +175,13 @@ def calls():
         (pixels.SignalToNoise(60.0).sigma, {"pixels": [[100.0, 200.0]]}),
         (pixels.homography, {"reference": square, "images": square + 0.1}),
         (po.Poses, {"time": poses.time, "position": poses.position, "orientation": poses.orientation}),
-        (po.Quadratic, {"half_width": 0.1}),
         (po.Clock, {"zero": 5, "tick": 1e-3}),
         (poses.mounted, {"position": [0.0, 0.0, 1.0], "orientation": [0.0, 0.0, 0.0, 1.0]}),
-        (poses.motion, {"derivative": po.Neighbours()}),
+        (poses.path, {}),
         (
             po.rigid_from_poses,
             {"times": poses.time, "positions": poses.position, "orientations": poses.orientation}
-            | {"frame": "camera", "derivative": po.Quadratic(2.0)},
+            | {"frame": "camera", "sigma": (0.001, 0.001), "correlated": 0.1},
         ),
         (po.read_tum, {"path": folder / "poses.txt", "clock": po.Clock()}),
         (po.read_euroc, {"path": folder / "data.csv", "clock": po.Clock()}),

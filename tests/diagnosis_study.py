@@ -7,9 +7,8 @@ import numpy as np
 from distrust_study import REST, waves
 
 from percept_obs import Camera, Gaussian, Scenario, affine, diagnose, pinhole, record, rigid, scenarios
-from percept_obs.system.motion import coefficients
 from percept_obs.studies.diagnosis.paths import SPINS
-from percept_obs.system.motion import Motion
+from percept_obs.system.motion import Motion, coefficients
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera
 

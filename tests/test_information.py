@@ -54,5 +54,6 @@ def test_correlated_residuals_widen_a_deviation_and_white_ones_do_not():
     walked = white.copy()
     for k in range(1, len(walked)):
         walked[k] += 0.8 * walked[k - 1]
-    assert _inflation(white) == 1.0
-    assert _inflation(walked) == pytest.approx(3.0, rel=0.1)
+    time = 0.01 * np.arange(4000)
+    assert _inflation(white, time) == 1.0
+    assert _inflation(walked, time) == pytest.approx(3.0, rel=0.1)

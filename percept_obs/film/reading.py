@@ -205,13 +205,9 @@ def _path(poses: Poses) -> CameraPath:
     found = [Poses(poses.time[part], poses.position[part], poses.orientation[part]).path() for part in parts]
     longest = max(found, key=lambda each: len(each.time))
     assert longest.errors is not None
-    return CameraPath(
-        *(
-            np.concatenate([getattr(each, name) for each in found])
-            for name in ("time", "position", "orientation", "velocity", "angular_velocity")
-        ),
-        replace(longest.errors, poses=poses),
-    )
+    names = ("time", "position", "orientation", "velocity", "angular_velocity")
+    arrays = {name: np.concatenate([getattr(each, name) for each in found]) for name in names}
+    return CameraPath(**arrays, errors=replace(longest.errors, poses=poses))
 
 
 def _corners(sighting: Sighting, board: Board, camera: PixelCamera, path: CameraPath) -> Iterator[Recording]:

@@ -360,8 +360,8 @@ def rigid_from_poses(
     """
     if frame not in ("world", "camera"):
         raise ValueError(f"the frame {frame!r} is none of 'world' and 'camera'")
-    arrays = ((times, "the times"), (positions, "the positions"), (orientations, "the orientations"))
-    poses = Poses(*(numbers(values, name) for values, name in arrays), sigma, correlated)
+    time, position, turns = numbers(times, "the times"), numbers(positions, "the positions"), orientations
+    poses = Poses(time, position, numbers(turns, "the orientations"), sigma, correlated)
     if frame == "camera":
         back = poses.rotation.inv()
         poses = replace(poses, position=-back.apply(poses.position.copy()), orientation=back.as_quat())

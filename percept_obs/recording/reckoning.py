@@ -23,18 +23,27 @@ REWEIGHTED = 3
 
 def reckon(motion: Motion, times: Array) -> Array:
     """Return the maps of (X, 1) from the first of some times to each of them, shape (K, 4, 4)."""
+    steps = maps_between(motion, times)
+    return np.stack([*accumulate(steps, lambda before, step: step @ before, initial=np.eye(4))])
+
+
+def maps_between(motion: Motion, times: Array) -> Array:
+    """Return the maps of (X, 1) from each of some times to the next one, shape (K - 1, 4, 4)."""
     steps = np.diff(times)
-    longest = max(LONGEST, float(times[-1] - times[0]) / MOST_STEPS)
-    parts = np.ceil(steps / longest * (1 - 1e-9)).astype(int)
-    row = np.repeat(np.arange(len(steps)), parts)
-    length = steps[row] / parts[row]
-    inside = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-    rows = motion.known(times[row] + (inside + 0.5) * length)
-    A, b = coefficients(motion, np.broadcast_to(rows, (len(row), rows.shape[1])))
-    maps = np.tile(np.eye(4), (len(row), 1, 1))
-    maps[:, :3] = transitions(A * length[:, None, None], b * length[:, None], 1.0)
-    whole = np.stack([*accumulate(maps, lambda before, step: step @ before, initial=np.eye(4))])
-    return whole[np.concatenate([[0], np.cumsum(parts)])]
+    longest = max(LONGEST, abs(float(times[-1] - times[0])) / MOST_STEPS)
+    parts = np.ceil(np.abs(steps) / longest * (1 - 1e-9)).astype(int)
+    found = np.tile(np.eye(4), (len(steps), 1, 1))
+    for count in np.unique(parts):
+        rows = np.flatnonzero(parts == count)
+        length = (steps[rows] / count)[:, None]
+        middles = times[rows, None] + (np.arange(count) + 0.5) * length
+        A, b = coefficients(motion, motion.known(middles.ravel()))
+        length = np.repeat(length, count, axis=0)
+        maps = np.tile(np.eye(4), (len(length), 1, 1))
+        maps[:, :3] = transitions(length[:, :, None] * A, length * b, 1.0)
+        for part in range(count):
+            found[rows] = maps[part::count] @ found[rows]
+    return found
 
 
 def transitions(A: Array, b: Array, length: float) -> Array:
@@ -50,7 +59,7 @@ def transitions(A: Array, b: Array, length: float) -> Array:
     return np.ascontiguousarray(across[:, :3])
 
 
-def point_on_rays(rays: Array, maps: Array) -> tuple[Array, Array, float]:
+def point_on_rays(rays: Array, maps: Array) -> tuple[Array, Array, Array]:
     """Return the (X, 1), but for a factor, whose maps lie on rays, its distances along them, and directions around it.
 
     A ray, shape (K, 3) and of length 1, and the position are parallel, so that their cross product is 0 (the direct

@@ -270,7 +270,7 @@ class Recording:
         ray = vectorised(surface.image_coordinates, surface.ray, surface.values)
         rays = np.stack(ray(*self.outputs[rows].T), axis=-1)
         rays /= np.linalg.norm(rays, axis=1, keepdims=True)
-        point, along, _ = point_on_rays(rays, reckon(self.motion, self.time)[rows])
+        point, along, _ = point_on_rays(rays, reckon(self.motion, self.time)[rows, :3])
         return float(np.median(along) / point[3]) if point[3] > 0 else math.inf
 
     @cached_property

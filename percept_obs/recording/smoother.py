@@ -46,6 +46,11 @@ class Smoothed:
         """Variance of the smoothed values: r h / (3 tau), which is below that of a sample."""
         return self.variance * min(1.0, self.step / (3 * self.memory))
 
+    @property
+    def rate_error(self) -> float:
+        """Variance of the rates, but for the ends, where it is up to 17 times as large: r h / (6 tau^3)."""
+        return self.error / (2 * self.memory**2)
+
 
 def smooth(time: Array, values: Array, floor: float = 0.0, memory: float | None = None) -> Smoothed:
     """Return the coordinates that are most probable, with one density of the jerk and one variance for all of them.
@@ -94,9 +99,7 @@ def smooth(time: Array, values: Array, floor: float = 0.0, memory: float | None 
     return Smoothed(value, rate / step, acceleration / step**2, step, variance, step * smoothness ** (-1 / 6))
 
 
-def smooth_turns(
-    time: Array, rotation: Rotation, floor: float = 0.0
-) -> tuple[Rotation, Smoothed]:
+def smooth_turns(time: Array, rotation: Rotation, floor: float = 0.0) -> tuple[Rotation, Smoothed]:
     """Return smoothed rotations, with the angular velocity and acceleration along the turned axes, (K, 3).
 
     Small turns between samples add up to angles, which are smoothed as coordinates are.  Angles about other axes at

@@ -7,11 +7,10 @@ from functools import cached_property
 
 import numpy as np
 
-from percept_obs.compile import Array, vectorised
+from percept_obs.compile import vectorised
 from percept_obs.recording import Recording
-from percept_obs.recording.reckoning import transitions
+from percept_obs.recording.reckoning import maps_between
 from percept_obs.system.forms import PartitionedSystem
-from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import slack_of
 from percept_obs.tracking.run import Run
@@ -88,7 +87,7 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
 
     Notes
     -----
-    Between samples the motion's coefficients are taken from the middle of the interval.
+    Between samples the motion is followed in steps of 1/120 s, each with the coefficients of its middle.
 
     Examples
     --------
@@ -132,12 +131,3 @@ def moving_window_least_squares(recording: Recording, window: float = 2.0) -> Ru
     estimate[good[in_front]] = surface.project(points[in_front])
     always = np.zeros(count, dtype=int)
     return Run(recording, LeastSquares(recording, window), estimate, estimate, None, "zero", np.empty(0), always)
-
-
-def maps_between(motion: Motion, time: Array) -> Array:
-    """Affine maps of (X, 1) from each time to the next one, shape (K - 1, 4, 4), with the motion of the middle."""
-    lengths = np.diff(time)[:, None]
-    A, b = coefficients(motion, motion.known((time[1:] + time[:-1]) / 2))
-    maps = np.broadcast_to(np.eye(4), (len(lengths), 4, 4)).copy()
-    maps[:, :3] = transitions(lengths[:, :, None] * A, lengths * b, 1.0)
-    return maps

@@ -22,7 +22,7 @@ from percept_obs.recording.reckoning import transitions
 from percept_obs.recording.simulation import LONGEST_STEP_SHARE
 from percept_obs.studies.statistics import STATISTICS, accumulated, statistics_of
 from percept_obs.system.forms import PartitionedSystem
-from percept_obs.system.motion import Motion
+from percept_obs.system.motion import Motion, coefficients
 from percept_obs.system.signal import from_the_start
 from percept_obs.system.surfaces import POINT, BehindCamera
 from percept_obs.tracking.grid import Hold

@@ -33,6 +33,9 @@ LONGER = 3
 SURELY = 3.5
 """Standard deviations by which an autocorrelation must differ from that of white noise to be one."""
 
+CORRELATED = 0.5
+"""Seconds up to which errors of samples are asked for their correlation."""
+
 FINEST = 1e-6
 """Noise of the best measurement, relative to the output's size: no camera is better, and rounding is not far below."""
 
@@ -119,7 +122,7 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
     at_end = recording.motion.known(recording.time[-1:])
 
     def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array, float]:
-        samples = recording.outputs[first:, columns]
+        samples, time = recording.outputs[first:, columns], recording.time[first:]
         seen = np.isfinite(samples)
         free = int(seen.sum()) - size
         if free < 1 or not seen.any(axis=0).all():
@@ -140,10 +143,10 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
             solution = least_squares(residuals, start, x_scale="jac", diff_step=SMALL, max_nfev=50)
             start, rest = solution.x, np.where(seen, samples - images(solution.x), 0.0)
             spread = np.sqrt((rest**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
-            if _inflation(rest / np.maximum(spread, finest)) > 1:  # residuals drift: trust no output more than others
+            if _inflation(rest / np.maximum(spread, finest), time) > 1:  # residuals drift: trust no output more than others
                 spread[:] = math.sqrt((spread**2).mean())
             before, noise = noise, np.maximum(spread, finest)
-        inflation = _inflation(rest / noise) if (spread > finest).any() else 1.0
+        inflation = _inflation(rest / noise, time) if (spread > finest).any() else 1.0
         weighted = solution.jac
         weighted[: free + size] *= (before / noise / inflation)[np.nonzero(seen)[1]][:, None]
         deviations = np.array([_deviation(weighted, k) for k in range(size + surface)])
@@ -177,14 +180,24 @@ def _backwards(form: PartitionedSystem, recording: Recording, first: int) -> Cal
     return outputs
 
 
-def _inflation(residuals: Array) -> float:
-    """Factor by which a standard deviation grows where residuals are correlated.
-
-    With the correlation r of neighbours the effective sample size is N (1 - r)/(1 + r).
-    """
+def _inflation(residuals: Array, time: Array) -> float:
+    """Factor by which a standard deviation grows where residuals are surely correlated, 0 where a sample was lost."""
     products = residuals[1:] * residuals[:-1]
-    pairs, r = np.count_nonzero(products), float(products.sum() / max((residuals**2).sum(), np.finfo(float).tiny))
-    return math.sqrt((1 + r) / (1 - r)) if r * math.sqrt(pairs) > SURELY else 1.0
+    surely = SURELY * float((residuals**2).sum()) < float(products.sum()) * math.sqrt(np.count_nonzero(products))
+    return math.sqrt(max(1.0, correlation(residuals, time))) if surely else 1.0
+
+
+def correlation(residuals: Array, time: Array) -> float:
+    """Return how many times their variance white noise needs, to be as bad as residuals, shape (K, m), 0 if lost.
+
+    Covariances of residuals less than `CORRELATED` seconds apart count, the farther ones less (Newey and West, A simple,
+    positive semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix, Econometrica 55(3),
+    1987).
+    """
+    lags = min(int(CORRELATED / float(np.median(np.diff(time)))), len(residuals) - 1)
+    shares = [1 - k / (lags + 1) for k in range(1, lags + 1)]
+    pairs = sum(share * float((residuals[k:] * residuals[:-k]).sum()) for k, share in enumerate(shares, 1))
+    return 1 + 2 * pairs / max(float((residuals**2).sum()), np.finfo(float).tiny)
 
 
 def _deviation(jacobian: Array, k: int) -> float:

@@ -19,6 +19,7 @@ from percept_obs.tracking.information import (
     NOTHING,
     Fit,
     Information,
+    correlation,
     information_at_end,
     one_point,
     relative_deviation,
@@ -233,6 +234,19 @@ class Run:
         return self.view.relative_error(self.truth, self.estimate, self.recording.motion.known(self.time))
 
     @cached_property
+    def effective_variance(self) -> float:
+        """Variance of white noise as bad as what this run left of the samples, and at least the recording's own.
+
+        Errors of poses that stay alike for long are found so, of which nobody told: take it as the `noise_variance` of
+        a second run.
+        """
+        settled = slice(len(self.time) // 4, None)  # before, the estimate is still finding its way
+        left = self.innovation.reshape(len(self.time), -1)[settled]
+        variance = float(np.nanmean(left**2)) if np.isfinite(left).any() else math.inf
+        variance *= correlation(np.nan_to_num(left), self.time[settled])
+        return max(variance, self.recording.effective_variance or 0.0)
+
+    @cached_property
     def information(self) -> Information:
         """Information in the samples at the end, independent of observer and truth."""
         return information_at_end(self._least_squares, self.elapsed, self.estimate[-1])
@@ -292,6 +306,8 @@ class Run:
             return said("doubted", doubt=self.recording.landmark.sentence)
         if self.observer.covariance is not None:
             claims = np.sqrt(np.maximum(np.diagonal(self.covariance[-1]), 0))
+            if self.observer.equations.update and (assumed := self._noise_variance) > 0:
+                claims *= math.sqrt(max(1.0, self.effective_variance / assumed))
             said = partial(said, claimed=math.hypot(relative_deviation(view, last, claims, known), speeds))
         found, claimed = self.information, said.keywords.get("claimed")
         apart = found.disagreement(view, known)

@@ -135,6 +135,6 @@ def _error_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
         name, size_of = names[order[int(np.abs(push).argmax())]], push[np.abs(push).argmax()]
         sentences.append(
             f"{observer.name}: at the end noise pushes the estimate of {name} by {size_of:.2g} per second on average; "
-            f"noise_variance takes it out where it equals the noise's variance, {recording.effective_variance or 0.0:.3g}."
+            f"noise_variance takes it out where it equals that of the noise, {recording.effective_variance or 0.0:.3g}."
         )
     return sentences
