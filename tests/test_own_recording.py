@@ -12,7 +12,7 @@ from utias_folder import utias_folder
 from percept_obs import Clock, PixelCamera, Poses, Recording, pinhole, read_euroc, read_tum, sphere
 from percept_obs.recording import Unlikely
 from percept_obs.recording.pose_files import write_tum
-from percept_obs.recording.stereo_mat import DERIVATIVE, read_stereo_mat
+from percept_obs.recording.stereo_mat import read_stereo_mat
 from percept_obs.recording.track_files import write_tracks
 from percept_obs.recording.worked import WORKED_CAMERA, worked_folder
 from percept_obs.site import TEXTS
@@ -220,7 +220,7 @@ def utias_files(tmp_path_factory):
 
 def test_the_real_recording_rebuilt_is_the_same(utias_files):
     folder, recordings = utias_files
-    motion = read_tum(folder / "poses.txt").motion(DERIVATIVE)
+    motion = read_tum(folder / "poses.txt").motion()
     np.testing.assert_allclose(motion.signal.samples, recordings[0].motion.signal.samples, atol=1e-9)
     camera = read_stereo_mat(utias_folder() / "dataset3.mat").camera
     back = Recording.from_csv(

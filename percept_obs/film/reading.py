@@ -206,8 +206,9 @@ def _path(poses: Poses) -> CameraPath:
     longest = max(found, key=lambda each: len(each.time))
     assert longest.errors is not None
     names = ("time", "position", "orientation", "velocity", "angular_velocity")
+    raw = {"time": poses.time, "position": poses.position, "turns": poses.rotation.as_matrix()}
     arrays = {name: np.concatenate([getattr(each, name) for each in found]) for name in names}
-    return CameraPath(**arrays, errors=replace(longest.errors, poses=poses))
+    return CameraPath(**arrays, errors=replace(longest.errors, **raw))
 
 
 def _corners(sighting: Sighting, board: Board, camera: PixelCamera, path: CameraPath) -> Iterator[Recording]:

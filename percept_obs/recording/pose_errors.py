@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.recording.reckoning import reckon
-
-if TYPE_CHECKING:
-    from percept_obs.recording.poses import Poses
-    from percept_obs.system.motion import Motion
+from percept_obs.system.motion import Motion
 
 WINDOW = 1.0
 """Seconds over which a virtual landmark is followed; the next window begins half of it later."""
@@ -30,8 +26,8 @@ class PoseErrors:
 
     Parameters
     ----------
-    poses : Poses
-        As they were given.
+    time, position, turns : arrays of shape (K,), (K, 3), (K, 3, 3)
+        The poses as they were given, their rotations as matrices.
     shift, turn : float
         Variances of the smoothed positions' coordinates in m^2 and of the smoothed rotations' angles in rad^2.
     shift_memory, turn_memory : float
@@ -50,7 +46,9 @@ class PoseErrors:
     True
     """
 
-    poses: Poses
+    time: Array
+    position: Array
+    turns: Array
     shift: float
     shift_memory: float
     turn: float
@@ -72,14 +70,13 @@ class PoseErrors:
         the motion, from the first pose on.  What the start explains is taken out of the difference and of its
         derivative by ln Z; the regression of the one on the other is the bias.
         """
-        poses = self.poses
-        rows = np.flatnonzero((poses.time >= begin) & (poses.time <= end))
+        inside = (self.time >= begin) & (self.time <= end)
         if motion.signal is not None and motion.signal.times is not None and len(motion.signal.times) > 1:
             known = motion.signal.times
-            rows = rows[(poses.time[rows] >= known[0]) & (poses.time[rows] <= known[-1])]
-        if len(rows) < 3:
+            inside &= (self.time >= known[0]) & (self.time <= known[-1])
+        if inside.sum() < 3:
             return VirtualLandmark(0.0, 0.0)
-        time, turns, position = poses.time[rows], poses.rotation[rows].as_matrix(), poses.position[rows]
+        time, turns, position = self.time[inside], self.turns[inside], self.position[inside]
         maps = reckon(motion, time)
         gathered = np.zeros(3)
         count = 0

@@ -173,7 +173,8 @@ class Poses:
         floors = [sigma**2 * max(1.0, 2 * self.correlated / step) for sigma in self.sigma]
         placed = smooth(time, position, floors[0])
         turned, turning = smooth_turns(time, rotation, floors[1])
-        errors = PoseErrors(self, placed.error, placed.memory, turning.error, turning.memory)
+        raw = (self.time, self.position, self.rotation.as_matrix())
+        errors = PoseErrors(*raw, placed.error, placed.memory, turning.error, turning.memory)
         return _densely(time, placed, turned, turning, errors)
 
     @cached_property

@@ -143,7 +143,9 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
             solution = least_squares(residuals, start, x_scale="jac", diff_step=SMALL, max_nfev=50)
             start, rest = solution.x, np.where(seen, samples - images(solution.x), 0.0)
             spread = np.sqrt((rest**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
-            if _inflation(rest / np.maximum(spread, finest), time) > 1:  # residuals drift: trust no output more than others
+            if (
+                _inflation(rest / np.maximum(spread, finest), time) > 1
+            ):  # residuals drift: trust no output more than others
                 spread[:] = math.sqrt((spread**2).mean())
             before, noise = noise, np.maximum(spread, finest)
         inflation = _inflation(rest / noise, time) if (spread > finest).any() else 1.0
