@@ -18,16 +18,12 @@ def test_without_noise_the_point_is_found(surface):
     np.testing.assert_allclose(found.distance[10:], 1 / recording.truth[10:, -1], rtol=1e-6)
 
 
-def test_a_varying_motion_is_followed_by_its_middles():
+def test_a_varying_motion_is_followed_between_samples_too():
     motion = rigid(lambda t: [0.1, 0.2 * np.sin(t), 0], lambda t: [np.cos(t), 0.3, 0], [0, 0, 0])
     scenario = Scenario("varying", motion, (0.5, 0, 4), 3, pinhole())
-    worst = []
-    for period in (0.1, 0.05):
-        recording = record(scenario, camera=Camera(period=period))
-        found = moving_window_least_squares(recording, 1.0)
-        worst.append(np.abs(found.points - recording.points)[found.time >= 1].max())
-    assert worst[0] < 0.01
-    assert worst[1] < worst[0] / 3
+    recording = record(scenario, camera=Camera(period=0.1))
+    found = moving_window_least_squares(recording, 1.0)
+    assert np.abs(found.points - recording.points)[found.time >= 1].max() < 1e-4
 
 
 @pytest.mark.parametrize(

@@ -100,8 +100,9 @@ def test_poses_beyond_the_images_are_cut_and_told(tmp_path):
     savemat(tmp_path / "long.mat", values | longer)
     with pytest.warns(Unlikely, match="240 poses and 200 times: the first 200 poses are read, and the last 40"):
         back = read_stereo_mat(tmp_path / "long.mat")
-    for name, each in vars(read_stereo_mat(tmp_path / "s.mat").path).items():
-        np.testing.assert_array_equal(getattr(back.path, name), each, err_msg=name)
+    there = read_stereo_mat(tmp_path / "s.mat").path
+    for name in ("time", "position", "orientation", "velocity", "angular_velocity"):
+        np.testing.assert_array_equal(getattr(back.path, name), getattr(there, name), err_msg=name)
 
 
 @pytest.mark.parametrize("camera", [None, CAMERA, LENS], ids=["image coordinates", "pixels", "pixels behind a lens"])
@@ -235,7 +236,7 @@ def test_the_real_recording_rebuilt_is_the_same(utias_files):
 
 
 def test_tracks_that_another_program_wrote_are_the_same(utias_files):
-    """It names its columns in its own way, and prints microseconds, thousandths of a pixel and tenths of a mm."""
+    """It names its columns in its own way, prints thousandths of a pixel, and smooths the poses in another way."""
     file, recordings = Path(__file__).with_name("data") / "utias/tracks.csv", utias_files[1]
     camera = read_stereo_mat(utias_folder() / "dataset3.mat").camera
     named = {"time": "time_s", "pixels": ("u_px", "v_px"), "point": "point_id", "depth": "depth_m_truth"}
@@ -245,7 +246,7 @@ def test_tracks_that_another_program_wrote_are_the_same(utias_files):
         rows = np.searchsorted(two.time, one.time - 1e-3)
         np.testing.assert_allclose(one.time, two.time[rows], atol=1e-6)
         np.testing.assert_allclose(one.outputs, two.outputs[rows], atol=2e-6)
-        np.testing.assert_allclose(one.distance, two.distance[rows], atol=1e-4)
+        np.testing.assert_allclose(one.distance, two.distance[rows], atol=3 * np.sqrt(two.motion.errors.shift))
 
 
 @pytest.mark.slow

@@ -143,9 +143,7 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
             solution = least_squares(residuals, start, x_scale="jac", diff_step=SMALL, max_nfev=50)
             start, rest = solution.x, np.where(seen, samples - images(solution.x), 0.0)
             spread = np.sqrt((rest**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
-            if (
-                _inflation(rest / np.maximum(spread, finest), time) > 1
-            ):  # residuals drift: trust no output more than others
+            if _inflation(rest / np.maximum(spread, finest), time) > 1:  # residuals drift: trust all outputs alike
                 spread[:] = math.sqrt((spread**2).mean())
             before, noise = noise, np.maximum(spread, finest)
         inflation = _inflation(rest / noise, time) if (spread > finest).any() else 1.0
@@ -192,9 +190,9 @@ def _inflation(residuals: Array, time: Array) -> float:
 def correlation(residuals: Array, time: Array) -> float:
     """Return how many times their variance white noise needs, to be as bad as residuals, shape (K, m), 0 if lost.
 
-    Covariances of residuals less than `CORRELATED` seconds apart count, the farther ones less (Newey and West, A simple,
-    positive semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix, Econometrica 55(3),
-    1987).
+    Covariances of residuals less than `CORRELATED` seconds apart count, the farther ones less (Newey and West, A
+    simple, positive semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix, Econometrica
+    55(3), 1987).
     """
     lags = min(int(CORRELATED / float(np.median(np.diff(time)))), len(residuals) - 1)
     shares = [1 - k / (lags + 1) for k in range(1, lags + 1)]
