@@ -48,7 +48,9 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
             weight = 1 / np.where(seen, depth, 1.0)
         free = m * int(seen.sum()) - form.states
         residual = product[-1, -1] + 2 * x @ b + x @ M @ x
-        known_noise = math.sqrt(recording.effective_variance or 0.0)
+        own = recording.noise_variance or 0.0
+        shared = (recording.effective_variance or 0.0) - own  # by all points, so that many on one body do not lessen it
+        known_noise = math.sqrt(own + shared * max(1.0, 3 * form.points / form.states))
         noise = max(math.sqrt(max(residual, 0.0) / free), finest, known_noise) if free > 0 else math.nan
         if free < 1 or not (depth[seen] > 0).all():
             return x, math.inf, np.full(m, noise), 0.0

@@ -96,6 +96,7 @@ def with_affine_motions(
             motion=known[each.motion, each.unit],
             truth=None if each.truth is None else each.truth * each.scale,
             distances={other: values / each.unit for other, values in each.distances.items()},
+            noise_variance=each.effective_variance,
             unit=1.0,
         )
         for name, each in recordings.items()
