@@ -22,10 +22,10 @@ from percept_obs.structure import (
     scaled_dynamics,
 )
 
-y1, y2, ybar3, d_s, w1, w2, w3 = sp.symbols("y1 y2 ybar3 d_s w1 w2 w3", real=True)
+y1, y2, ybar3, d_s, w_c1, w_c2, w_c3 = sp.symbols("y1 y2 ybar3 d_s w_c1 w_c2 w_c3", real=True)
 v_c1, v_c2, v_c3, v_p1, v_p2, v_p3 = sp.symbols("v_c1:4 v_p1:4", real=True)
 ALL = (d_s, v_c1, v_c2, v_c3, v_p1, v_p2, v_p3)
-W = (w1, w2, w3)
+W = (w_c1, w_c2, w_c3)
 VELOCITIES = QUANTITIES[1:]
 STILL = ("v_p1", "v_p2", "v_p3")
 
@@ -122,7 +122,7 @@ test_impossible_choices_are_refused_with_the_reason = refuses(
     (("d_s", "v_c2", "v_c3"), {"zero": ("v_c1", *STILL)}, "know such a velocity, or d_s"),
     (("d_s", "v_c1", "v_p2"), {"zero": ("v_c3", "v_p3")}, "none is known that is not zero along an axis"),
     (("d_s", "v_p4"), {}, "there is no quantity v_p4; there are d_s, v_c1"),
-    (("d_s",), {"zero": ("w1",)}, "there is no quantity w1"),
+    (("d_s",), {"zero": ("w_c1",)}, "there is no quantity w_c1"),
     (("d_s", "d_s"), {}, "unknown names a quantity twice"),
     (("v_c1",), {"zero": ("v_c1",)}, "v_c1 cannot be unknown and known at once"),
     (("d_s", "v_c1"), {"earlier": ("d_s",)}, "d_s cannot be unknown and known at once"),
@@ -169,7 +169,11 @@ def test_the_determinant_vanishes_exactly_where_the_condition_fails(choice, draw
 @given(choices, draws)
 def test_quantities_and_theta_are_each_others_inverse(choice, drawn):
     at = values_of(choice, drawn)
-    motion = rigid([at[s] for s in W], [at[s] for s in ALL[1:4]], [at[s] for s in ALL[4:]])
+    motion = rigid(
+        camera_angular_velocity=[at[s] for s in W],
+        camera_velocity=[at[s] for s in ALL[1:4]],
+        point_velocity=[at[s] for s in ALL[4:]],
+    )
     theta = choice.theta_values(at[d_s], motion, [0.0, 1.0])
     assert theta.shape == (2, len(choice.unknown))
     for name, found in choice.quantities(theta).items():

@@ -174,8 +174,8 @@ class CameraPath:
 
     @cached_property
     def motion(self) -> Motion:
-        """Motion of a point at rest in the camera's frame: X' = -v - w x X, so `rigid` takes -w."""
-        return rigid(-self.angular_velocity, self.velocity, np.zeros(3), times=self.time)
+        """Motion of a point at rest in the camera's frame: X' = -w x X - v."""
+        return rigid(camera_angular_velocity=self.angular_velocity, camera_velocity=self.velocity, times=self.time)
 
     def sees(self, places: ArrayLike) -> Array:
         """Return points at rest in the world, shape (n, 3), in the camera's frame, in metres, shape (K, n, 3)."""
@@ -193,7 +193,7 @@ def rigid_from_poses(
 ) -> Motion:
     """Return the rigid motion of points at rest, from the poses of the camera that sees them.
 
-    It is X' = [w]x X - v_c as of `rigid`, in the camera's frame; its w is minus the camera's angular velocity.
+    It is X' = -w_c x X - v_c as of `rigid`, in the camera's frame.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ def rigid_from_poses(
     Returns
     -------
     Motion
-        Known from the first pose to the last: w in rad/s, v_c in m/s.
+        Known from the first pose to the last: the camera's w_c in rad/s and v_c in m/s.
 
     Raises
     ------
@@ -232,7 +232,7 @@ def rigid_from_poses(
     >>> turns = np.stack([np.sin(0.05 * t), 0 * t, 0 * t, np.cos(0.05 * t)], axis=1)
     >>> motion = rigid_from_poses(t, np.outer(t, [0.2, 0, 0]), turns)
     >>> motion.known([0.5]).round(9)[0, [0, 3]].tolist()
-    [-0.1, 0.2]
+    [0.1, 0.2]
     """
     if frame not in ("world", "camera"):
         raise ValueError(f"the frame {frame!r} is none of 'world' and 'camera'")

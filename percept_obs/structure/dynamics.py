@@ -22,7 +22,8 @@ class ScaledDynamics:
 
         ybar' = Omega1 v_c d_s + Omega2 + Omega3 v_p d_s
 
-    The matrices are `camera` for Omega1, `rotation` for that which multiplies w in Omega2, and `object` for Omega3.
+    The matrices are `camera` for Omega1, `rotation` for that which multiplies w_c in Omega2 (Chwa's w is
+    -w_c), and `object` for Omega3.
     """
 
     camera: sp.ImmutableMatrix
@@ -53,7 +54,7 @@ def scaled_dynamics() -> ScaledDynamics:
     --------
     >>> from percept_obs.structure import scaled_dynamics
     >>> scaled_dynamics().rate[2]
-    d_s*v_c3*ybar3**2 - d_s*v_p3*ybar3**2 - w1*y2*ybar3 + w2*y1*ybar3
+    d_s*v_c3*ybar3**2 - d_s*v_p3*ybar3**2 + w_c1*y2*ybar3 - w_c2*y1*ybar3
     """
     system = PerspectiveSystem(rigid(), pinhole())
     inverse_depth = system.coordinates[-1]
