@@ -250,7 +250,7 @@ def rate_of(token: str) -> str:
 
 
 def other_names(name: str) -> list[str]:
-    """Return other spellings: omega or w for w_c, x, y, z for 1, 2, 3, dy3dt for the rate of y3, lambda for lambdahat."""
+    """Return other spellings: omega or w for w_c, x, y, z for 1, 2, 3, dy3dt for the rate of y3, lambda for its hat."""
     numbered = re.sub(r"^(omega|wc?|vc|vp)([xyz])", lambda f: f[1] + str("xyz".index(f[2]) + 1), name)
     found = [re.sub(r"^(lambda\d?)hat", r"\1", name), numbered, re.sub("omega", "w", numbered)]
     found.append(re.sub(r"omega|^w(?!c)", "wc", numbered))

@@ -99,8 +99,8 @@ def chwa2019_simulation(section: str, chwa_rotation: Sequence[float] = _STILL) -
     section : str
         "IV.A", "IV.B", "V.A", "V.B", "VI.A", "VI.B" or "VI.C".
     chwa_rotation : three floats
-        Chwa's w in rad/s, minus the camera's angular velocity; zero in the paper.  If it is not zero, the point starts on its axis, at
-        w / w3 in the image, so that it stays in view; w3 must be positive then.
+        Chwa's w in rad/s, minus the camera's angular velocity; zero in the paper.  If it is not zero, the point starts
+        on its axis, at w / w3 in the image, so that it stays in view; w3 must be positive then.
 
     Raises
     ------

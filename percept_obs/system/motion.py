@@ -190,7 +190,8 @@ def rigid(
 
     Parameters
     ----------
-    camera_angular_velocity, camera_velocity, point_velocity : arrays of shape (3,) or (K, 3), functions of time, optional
+    camera_angular_velocity, camera_velocity, point_velocity : arrays of shape (3,) or (K, 3), functions of time, \
+optional
         w_c in rad/s, as a gyroscope in the camera has it, and v_c and v_p in m/s; symbols when all are left out, else 0
         for those that are.
     times : array of shape (K,), optional

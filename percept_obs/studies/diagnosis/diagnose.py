@@ -27,8 +27,8 @@ class Finding:
     Parameters
     ----------
     key : str
-        "time offset", "focal length", "distortion ignored", "gyro bias", "scale drift", "rolling shutter", "sign of w_c",
-        "sign of v", "flipped axis", "frames swapped", "mismatch", "outliers" or "pixels".
+        "time offset", "focal length", "distortion ignored", "gyro bias", "scale drift", "rolling shutter",
+        "sign of w_c", "sign of v", "flipped axis", "frames swapped", "mismatch", "outliers" or "pixels".
     sentence : str
         The mistake in words.
     evidence : str
