@@ -37,7 +37,7 @@ class ScaledDynamics:
         return (self.rotation * sp.ImmutableMatrix(ROTATION) + d_s * translation).expand()
 
     def _repr_latex_(self) -> str:
-        names = (r"\Omega_1", r"\Omega_2 = \Omega_\omega \omega,\quad \Omega_\omega", r"\Omega_3")
+        names = (r"\Omega_1", r"\Omega_2 = \Omega_w w_c,\quad \Omega_w", r"\Omega_3")
         matrices = map(sp.latex, (self.camera, self.rotation, self.object))
         return r"$\displaystyle " + r",\quad ".join(map(" = ".join, zip(names, matrices, strict=True))) + "$"
 

@@ -292,7 +292,7 @@ def servo(
         for name, value in zip(rows, (x, y, believed, u, lost), strict=True):
             rows[name].append(value)
         twist = np.zeros((len(u), 4, 4))
-        twist[:, :3, :3] = np.cross(u[:, None, 3:], np.eye(3)).swapaxes(1, 2)
+        twist[:, :3, :3] = np.cross(u[:, None, 3:], np.eye(3))  # -[w_c]x
         twist[:, :3, 3] = -u[:, :3]
         moved = expm(period * twist)
         next_points = points @ moved[:, :3, :3].swapaxes(1, 2) + moved[:, None, :3, 3]
