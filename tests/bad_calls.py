@@ -61,7 +61,7 @@ STRANGE = (
 def calls():
     """Calls that work: name -> (function, arguments by name); "*" are positional ones."""
     motion = po.affine([[0, 0.1, 0], [0, 0, 0], [0, 0, 0.1]], [0.3, 0.1, 0.2])
-    turning = po.rigid([0, 0.1, 0.2], [0.3, 0, 0.1], [0, 0, 0])
+    turning = po.rigid(camera_angular_velocity=[0, -0.1, -0.2], camera_velocity=[0.3, 0, 0.1])
     system = po.PerspectiveSystem(po.affine(), po.pinhole())
     form = system.measure("y1", "y2")
     scenario = po.Scenario("s", motion, (1, 1, 3), 2.0, po.pinhole())
@@ -91,7 +91,7 @@ def calls():
     write_stereo_mat(folder / "s.mat", poses, mount, np.ones((len(poses.time), 2, 4)), camera, 0.1)
     good = [
         (po.affine, {"A": np.eye(3), "b": np.ones(3), "times": None}),
-        (po.rigid, {"angular_velocity": [0, 0, 1], "camera_velocity": [0, 0, 1], "point_velocity": [0, 0, 0]}),
+        (po.rigid, {"camera_angular_velocity": [0, 0, 1], "camera_velocity": [0, 0, 1], "point_velocity": [0, 0, 0]}),
         (po.linear, {"A": np.eye(2), "v": np.ones(2), "states": 2}),
         (Signal, {"samples": [[1.0], [2.0]], "times": [0.0, 1.0]}),
         (motion.known, {"times": [0.0, 1.0]}),
@@ -146,7 +146,7 @@ def calls():
         (po.FirstSight, {"depth": 3.0, "absence": 1.0}),
         (po.PointsScenario, {"name": "b", "form": body, "state": state, "duration": 1.0}),
         (points_scenarios.moving_body, {"points": 2}),
-        (Manoeuvre, {"turning": 1.0, "spin": 0.5, "input": 1.0, "velocity": (0.0, 0.0, 0.1)}),
+        (Manoeuvre, {"turning": 1.0, "spin": 0.5, "input": 1.0, "camera_velocity": (0.0, 0.0, 0.1)}),
         (body.locate, {"states": state}),
         (body.outputs, {"states": state}),
         (body.information, {"outputs": np.ones((2, 2))}),
@@ -163,7 +163,7 @@ def calls():
         (structure.PatchDepth, {"offsets": structure.grid_patch(1.0)}),
         (structure.grid_patch, {"side": 1.0, "count": 3, "normal": (0.0, 0.0, 1.0)}),
         (structure.ScaledDepthCamera, {"period": 0.01, "pixels": camera, "ratio": pixels.SignalToNoise(60.0)}),
-        (structure_scenarios.chwa2019_simulation, {"section": "IV.A", "angular_velocity": (0.0, 0.0, 0.1)}),
+        (structure_scenarios.chwa2019_simulation, {"section": "IV.A", "chwa_rotation": (0.0, 0.0, 0.1)}),
         (structure_scenarios.chwa2019_semigeneral, {"set_up": "simulation", "moves_at": 5.0}),
         (structure.seen_as, {"recording": pictures, "choice": case.choice, "motion": case.motion, "scale": 4.0}),
         (structure.linear_view, {"recording": pictures}),

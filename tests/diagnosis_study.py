@@ -21,7 +21,7 @@ FRAMES = [
     )
 ]
 
-MOTION_FAULTS = ("time offset", "sign of w", "sign of v", "frames swapped", "gyro bias", "scale drift")
+MOTION_FAULTS = ("time offset", "sign of w_c", "sign of v", "frames swapped", "gyro bias", "scale drift")
 IMAGE_FAULTS = ("focal length", "distortion ignored", "flipped axis", "rolling shutter", "mismatch", "outliers")
 FAULTS = (*MOTION_FAULTS, *IMAGE_FAULTS, "pixels")
 ORDER = (
@@ -39,7 +39,10 @@ ORDER = (
 def drawn(seed, points=5):
     """Recordings of several points by one camera, with the signal, and numbers to go on with."""
     draw = np.random.default_rng(seed)
-    motion = rigid(waves(draw, draw.uniform(0.1, 0.3)), waves(draw, draw.uniform(0.3, 0.6)), REST)
+    motion = rigid(
+        camera_angular_velocity=waves(draw, -draw.uniform(0.1, 0.3)),
+        camera_velocity=waves(draw, draw.uniform(0.3, 0.6)),
+    )
     duration, camera = draw.uniform(6, 10), Camera(draw.choice([0.04, 0.05]), Gaussian(10 ** draw.uniform(-3, -2.5)))
     found = []
     while len(found) < points:
@@ -88,7 +91,7 @@ def _spoiled(recordings, fault, draw):
     bias *= draw.uniform(0.01, 0.05) / np.linalg.norm(bias)
     changes = {
         "time offset": lambda t, A, b: rates(motion, t + late),
-        "sign of w": lambda t, A, b: (np.swapaxes(A, 1, 2), b),
+        "sign of w_c": lambda t, A, b: (np.swapaxes(A, 1, 2), b),
         "sign of v": lambda t, A, b: (A, -b),
         "frames swapped": lambda t, A, b: (into @ A @ into.T, b @ into.T),
         "gyro bias": lambda t, A, b: (A - np.tensordot(bias, SPINS, 1), b),
@@ -148,12 +151,12 @@ def clean(seed):
                 scene = kind()
                 found = [record(scene, min(duration, scene.duration), noise, seed)]
             else:
-                turning, velocity = waves(draw, draw.uniform(0.05, 0.3)), waves(draw, draw.uniform(0.1, 0.6))
+                turning, velocity = waves(draw, -draw.uniform(0.05, 0.3)), waves(draw, draw.uniform(0.1, 0.6))
                 if kind in ("shift", "rest"):
                     turning = REST
                 if kind in ("turn", "rest"):
                     velocity = REST
-                motion = rigid(turning, velocity, REST)
+                motion = rigid(camera_angular_velocity=turning, camera_velocity=velocity)
                 found = []
                 for number in range(draw.integers(1, 7)):
                     place = draw.uniform(2, 8) * np.array([*draw.uniform(-0.4, 0.4, 2), 1.0])

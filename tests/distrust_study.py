@@ -28,21 +28,21 @@ def moved(draw, kind, constant):
     """
     depth, speed = draw.uniform(2, 6), draw.uniform(0.3, 0.7)
     place = depth * np.array([*draw.uniform(-0.3, 0.3, 2), 1.0])
-    turning = waves(draw, draw.choice([0.0, 0.1]))
+    turning = waves(draw, -draw.choice([0.0, 0.1]))
     velocity = waves(draw, speed)
     if constant:
         turning = turning(0.0)
         velocity = speed * place_across(draw, place)
     if kind == "standing camera":
-        return (rigid(turning, REST, REST),) * 2 + (place,)
+        return (rigid(camera_angular_velocity=turning),) * 2 + (place,)
     if kind == "focus of expansion":
-        return (rigid(REST, speed / 4 * place / np.linalg.norm(place), REST),) * 2 + (place,)
-    resting = rigid(turning, velocity, REST)
+        return (rigid(camera_velocity=speed / 4 * place / np.linalg.norm(place)),) * 2 + (place,)
+    resting = rigid(camera_angular_velocity=turning, camera_velocity=velocity)
     if kind == "good":
         return resting, resting, place
     own = np.cross(place, velocity) if constant else draw.normal(size=3)
     own *= speed * draw.uniform(0.5, 1.5) / np.linalg.norm(own)
-    return rigid(turning, velocity, own), resting, place
+    return rigid(camera_angular_velocity=turning, camera_velocity=velocity, point_velocity=own), resting, place
 
 
 def place_across(draw, place):

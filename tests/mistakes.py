@@ -14,10 +14,10 @@ MISTAKES = {
     },
     "01_perspective_dynamics": {
         "turning": [
-            "y1' = w2 - w3 y2",  # the derivative of 1/Z is forgotten
-            "y1' = w2 - w3 y2 + y1 (w1 y2 - w2 y1)",
-            "y1' = w3 - w2 y2 - y1 (w1 y2 - w2 y1)",
-            "y1' = w2 - w3 y2 - w1 y2 + w2 y1",
+            "y1' = -w_c2 + w_c3 y2",  # the derivative of 1/Z is forgotten
+            "y1' = -w_c2 + w_c3 y2 + y1 (w_c2 y1 - w_c1 y2)",
+            "y1' = -w_c3 + w_c2 y2 - y1 (w_c2 y1 - w_c1 y2)",
+            "y1' = -w_c2 + w_c3 y2 - w_c2 y1 + w_c1 y2",
         ],
         "excited": ["a", "b", "c"],
         "gain-for-one": [2, 3, 8, 10, 20],

@@ -24,11 +24,11 @@ OTHERS = {
     "Gaussian noise, held": {"noise": GAUSSIAN, "seed": 4294967295, "hold": "zero"},
     "a coarse camera": {"period": 0.02, "step": 0.004, **SWINGING},
     "the exact signal": {"duration": 1.5, "hold": "exact", "period": 0.01, "step": 0.002, **SWINGING},
-    "two unknowns": {"unknown": ["d_s", "v_c2"], "observers": ["ideal", "extended_kalman"], "w": TURNED},
+    "two unknowns": {"unknown": ["d_s", "v_c2"], "observers": ["ideal", "extended_kalman"], "w_c": TURNED},
     # without noise the sign of what is exactly 0 hangs on the last bit
     "one unknown": {"unknown": ["v_p3"], "observers": EVERY, "duration": 1.0, "noise": NOISY, "start": "own"},
     "d_s alone": {"duration": 1.5, "unknown": ["d_s"], "v_c": [-0.22, -0.23, 0.1], **SWINGING},
-    "d_s from an earlier stage": {"unknown": ["v_c1", "v_p2"], "earlier": True, "w": TURNED},
+    "d_s from an earlier stage": {"unknown": ["v_c1", "v_p2"], "earlier": True, "w_c": TURNED},
     "another axis": {"unknown": ["d_s", "v_c1", "v_c3"], "ybar": [-0.2, 0.4, 0.3], "scale": 2.0},
     "the point comes too near": {"v_c": [-0.22, -0.23, 1.5], "unknown": ["d_s", "v_p1"]},
     "a drive with a speedometer": {**DRIVE, "unknown": ["d_s", "v_c1", "v_c2"]},

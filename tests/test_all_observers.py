@@ -205,7 +205,7 @@ def test_the_jacobian_against_a_finite_difference(name, form, seed):
 @pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 def test_a_motion_that_varies_is_followed_or_refused(make):
     form = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
-    motion = rigid(lambda t: [0, 0.1 * t, 0], lambda t: [0.5, 0.1 * t, 0], lambda t: [0, 0, 0])
+    motion = rigid(camera_angular_velocity=lambda t: [0, -0.1 * t, 0], camera_velocity=lambda t: [0.5, 0.1 * t, 0])
     recording = record(Scenario("varying", motion, (0.3, 0.2, 4), 1, pinhole()))
     if make.constant_motion:
         with pytest.raises(DoesNotFit, match="needs a motion with constant coefficients"):

@@ -49,7 +49,9 @@ def test_what_cannot_be_used_is_left_out_and_told():
         "its first sample was lost": replace(SEEN[0], outputs=first),
         "it lasts 0.5 s, and the first error is asked for after 1 s": SEEN[0].between(0, 0.5),
         "its outputs are y1, those of the first y1, y2": half,
-        "its motion is rigid with other": replace(SEEN[0], motion=rigid([0, 0, 0.1], [0.1, 0, 0], [0, 0, 0])),
+        "its motion is rigid with other": replace(
+            SEEN[0], motion=rigid(camera_angular_velocity=[0, 0, -0.1], camera_velocity=[0.1, 0, 0])
+        ),
         "its truth is known at no sample": replace(SEEN[0], truth=SEEN[0].truth * np.nan),
     }
     one_call = found([*SEEN, *others.values()])

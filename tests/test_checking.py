@@ -183,7 +183,7 @@ def test_parts_of_a_form_are_checked_together():
 def test_conventions_are_no_errors():
     camera = check([sp.Eq(sp.Symbol(f"ydot{k}"), rate.xreplace(TURN)) for k, rate in enumerate(RIGID.rate, 1)], RIGID)
     assert camera.right
-    assert "your angular velocity is the camera's" in camera.summary
+    assert "your angular velocity turns the world" in camera.summary
     system = PerspectiveSystem(MOTIONS["affine"], plane())
     further = {n: n / sp.Symbol("d") for n in system.surface.parameters}
     distance = check({"y1'": system.rate[0].xreplace(further)}, system)

@@ -27,7 +27,10 @@ def test_the_point_that_explains_a_track_leaves_its_noise():
 
 
 def test_a_path_is_of_fourth_order_where_rotations_do_not_commute():
-    turning = rigid(lambda t: [np.sin(2 * t), np.cos(3 * t), 0.5], lambda t: [np.cos(t), 0.3, 0], [0, 0, 0])
+    turning = rigid(
+        camera_angular_velocity=lambda t: [-np.sin(2 * t), -np.cos(3 * t), -0.5],
+        camera_velocity=lambda t: [np.cos(t), 0.3, 0],
+    )
     exact = record(Scenario("turning", turning, (0.2, 0.1, 6), 2, pinhole()), camera=Camera(0.05))
     assert fit([track_of(exact)], "nothing", ()).rms < 2e-6
 
@@ -118,12 +121,12 @@ def test_the_offset_is_found_with_its_size_and_drawn():
 
 
 def test_wrong_numbers_that_a_motion_does_not_show_are_said():
-    shift = rigid([0, 0, 0], lambda t: [np.cos(t), 0.3 * np.sin(2 * t), 0], [0, 0, 0])
+    shift = rigid(camera_velocity=lambda t: [np.cos(t), 0.3 * np.sin(2 * t), 0])
     still = record(Scenario("shift", shift, (0.2, 0.1, 4), 8, pinhole()), camera=Camera(0.05, Gaussian(0.002)))
     for ratio in (0.8, 1.0, 1.2):
         found = diagnose(replace(still, outputs=ratio * still.outputs, truth=None, signal=None))
         assert found.named == "nothing"
-        assert {"focal length", "sign of w"} <= set(found.not_told)
+        assert {"focal length", "sign of w_c"} <= set(found.not_told)
     assert "This motion cannot tell: focal length" in found.sentence
 
 
@@ -170,7 +173,13 @@ def test_pixels_are_told_by_their_size():
 
 
 def test_a_constant_motion_shows_no_offset():
-    steady = Scenario("steady", rigid([0, 0.1, 0], [0.3, 0.1, 0], [0, 0, 0]), (0.2, 0.1, 3), 5, pinhole())
+    steady = Scenario(
+        "steady",
+        rigid(camera_angular_velocity=[0, -0.1, 0], camera_velocity=[0.3, 0.1, 0]),
+        (0.2, 0.1, 3),
+        5,
+        pinhole(),
+    )
     found = diagnose(record(steady))
     assert "time offset" in found.not_told
     assert found.named == "nothing"

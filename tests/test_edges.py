@@ -104,7 +104,9 @@ def test_a_motion_with_kinks_is_taken_apart_at_them():
     """Velocities in straight lines between their samples, whose integral is the trapezoidal rule's."""
     times = np.array([0.0, 0.31, 0.5, 1.3, 2.0])
     velocity = np.random.default_rng(0).normal(size=(5, 3))
-    moving = rigid(np.zeros((5, 3)), np.zeros((5, 3)), velocity, times)
+    moving = rigid(
+        camera_angular_velocity=np.zeros((5, 3)), camera_velocity=np.zeros((5, 3)), point_velocity=velocity, times=times
+    )
     scene = replace(scenarios.ma2005_eq35(), motion=moving, position=(0.0, 0.0, 50.0), duration=2.0)
     steps = np.diff(times)[:, None] / 2 * (velocity[1:] + velocity[:-1])
     moved = scene.points(times)[1:] - scene.position
@@ -133,8 +135,13 @@ def test_the_lowest_value_between_is_that_of_the_cubic():
 
 def test_a_hole_in_the_motion_counts_only_during_the_recording():
     times = np.array([0.0, 0.1, 0.2, 0.3, 0.4, 5.0])
-    motion = rigid(np.zeros((6, 3)), np.zeros((6, 3)), np.zeros((6, 3)), times)
-    seen = record(replace(scenarios.ma2005_eq35(), motion=rigid((0, 0, 0), (0, 0, 0), (0, 0, 0)), duration=0.4))
+    motion = rigid(
+        camera_angular_velocity=np.zeros((6, 3)),
+        camera_velocity=np.zeros((6, 3)),
+        point_velocity=np.zeros((6, 3)),
+        times=times,
+    )
+    seen = record(replace(scenarios.ma2005_eq35(), motion=rigid(point_velocity=(0, 0, 0)), duration=0.4))
     replace(seen, motion=motion)  # a warning would be an error here
 
 

@@ -49,9 +49,9 @@ def form(*measured, surface=None, motion=None):
 def varying():
     """A rigid motion that changes with time."""
     motion = rigid(
-        lambda t: (0.1 * np.sin(t), 0.1 * np.cos(1.3 * t), 0.1),
-        lambda t: (np.cos(0.8 * t), np.sin(0.7 * t), 0.6 + 0.2 * np.sin(0.5 * t)),
-        lambda t: (0, 0, 0.9),
+        camera_angular_velocity=lambda t: (-0.1 * np.sin(t), -0.1 * np.cos(1.3 * t), -0.1),
+        camera_velocity=lambda t: (np.cos(0.8 * t), np.sin(0.7 * t), 0.6 + 0.2 * np.sin(0.5 * t)),
+        point_velocity=lambda t: (0, 0, 0.9),
     )
     recording = record(Scenario("varying", motion, (0.3, 0.2, 6), 12, pinhole()), camera=COARSE, seed=2)
     return track(recording, ibo(form("y1", "y2", motion=rigid())), ZERO)

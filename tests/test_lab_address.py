@@ -264,7 +264,7 @@ def test_a_hostile_address_leaves_the_page_at_its_opening_state(page):
 def test_velocities_in_samples_are_saved_chosen_linked_and_undone(page):
     times = np.linspace(0, 2, 21)
     v_c = np.column_stack([-0.2 - 0.1 * np.sin(times), -0.2 + 0 * times, 0 * times])
-    lab = structure_lab(rigid([0, 0, 0], v_c, [0, 0, 0], times))
+    lab = structure_lab(rigid(camera_velocity=v_c, times=times))
     text = of_one(lab)
     shown = page(text)
     slider, source, duration = (shown.locator(control(name)) for name in ("v_c1", "velocities", "duration number"))

@@ -22,17 +22,17 @@ WIDE, HIGH = 0.8, 0.45
 """Half the width and height of the film in the image."""
 SIDE = 0.06
 """Half the side of the square."""
-TURN, TRAVEL, NONE = [0.0, 0.2, 0.0], [0.2, 0.0, 0.05], [0.0, 0.0, 0.0]
+TURN, TRAVEL = [0.0, -0.2, 0.0], [0.2, 0.0, 0.05]
 CORNER, POINT = (0.25, -0.05, 0.6), (-0.1, 0.08, 0.7)
 
 
 TIMES = np.arange(0, DURATION + 1 / RATE, 1 / RATE)
-MOTION = rigid(*(np.tile(v, (len(TIMES), 1)) for v in (TURN, TRAVEL, NONE)), times=BEGIN + TIMES)
+MOTION = rigid(camera_angular_velocity=np.tile(TURN, (len(TIMES), 1)), camera_velocity=TRAVEL, times=BEGIN + TIMES)
 
 
 def seen(name, place, later=0.0, truth=True):
     """A track of a point, by the film's clock, from later on."""
-    scenario = Scenario(name, rigid(TURN, TRAVEL, NONE), place, DURATION, pinhole())
+    scenario = Scenario(name, rigid(camera_angular_velocity=TURN, camera_velocity=TRAVEL), place, DURATION, pinhole())
     track = record(scenario, camera=Camera(1 / RATE)).between(later, DURATION)
     known = {"truth": track.truth} if truth else {"truth": None, "distances": {"triangulation": 1 / track.truth[:, 2]}}
     return replace(

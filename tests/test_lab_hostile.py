@@ -42,12 +42,12 @@ SPINNING = [[0.0, -1000.0, 1000.0], [1000.0, 0.0, -1000.0], [-1000.0, 1000.0, 0.
     ("name", "fast"),
     [
         ("observer", {"A": SPINNING, "duration": 120.0}),
-        ("structure", {"duration": 60.0, "period": 0.01, "w": [0.0, 900.0, 0.0], "v_p_swing": [0.1, 0.0, 0.0]}),
-        ("structure", {"duration": 100.0, "w": [900.0, 900.0, 900.0]}),
+        ("structure", {"duration": 60.0, "period": 0.01, "w_c": [0.0, 900.0, 0.0], "v_p_swing": [0.1, 0.0, 0.0]}),
+        ("structure", {"duration": 100.0, "w_c": [900.0, 900.0, 900.0]}),
         ("points", {"spin": 10.0, "duration": 120.0}),
         ("observer", {"motion": "b1 = sin(1000 t)"}),
         ("structure", {"motion": "v_c1 = sin(1000 t)", "duration": 60.0, "period": 0.01}),
-        ("points", {"motion": "w1 = sin(1000 t)"}),
+        ("points", {"motion": "w_c1 = sin(1000 t)"}),
     ],
 )
 def test_what_would_keep_the_kernel_busy_is_said_and_not_begun(name, fast, monkeypatch):

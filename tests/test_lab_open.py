@@ -137,7 +137,7 @@ def test_page_and_python_agree_on_all_of_it_and_copied_code_makes_the_same_run(l
             np.testing.assert_allclose(copied[name].estimate, run.estimate, rtol=1e-8, atol=1e-9)
 
 
-SPUN = "v_c1 = -0.22 - 0.1 sin(2t); w = [0.1 if t < 0.1234 else -0.2 t, 0, w3]; v_p2 = 0.3 exp(-t)"
+SPUN = "v_c1 = -0.22 - 0.1 sin(2t); w_c = [0.1 if t < 0.1234 else -0.2 t, 0, w_c3]; v_p2 = 0.3 exp(-t)"
 
 
 @pytest.fixture(scope="module")
@@ -148,7 +148,7 @@ def structure():
 @pytest.mark.slow
 @pytest.mark.node
 def test_of_structure_a_brought_observer_and_a_typed_motion_agree(structure, node):
-    changes = ({}, {"unknown": ["d_s", "v_p1"], "hold": "exact", "w": [0.0, 0.0, 0.2], "v_p_swing": [0.1] * 3})
+    changes = ({}, {"unknown": ["d_s", "v_p1"], "hold": "exact", "w_c": [0.0, 0.0, 0.2], "v_p_swing": [0.1] * 3})
     tasks = [structure.check({**structure.settings, **change}) for change in changes]
     for settings, answer in zip(tasks, run_in_node(node, structure, tasks), strict=True):
         copied = copied_runs(answer, settings, cubic=cubic)
@@ -165,7 +165,7 @@ def test_what_is_typed_decides_what_is_known_to_be_zero(structure):
         unknowns_of(structure.check(zero))
 
 
-SWUNG = "w = [0.2 step(t - 0.3333), 0.3 cos(t), 0.2 + w3]; v1 = v1 + 0.5 sin(2t); w_b2 = 0.1 t"
+SWUNG = "w_c = [-0.2 step(t - 0.3333), -0.3 cos(t), w_c3 - 0.2]; v_c1 = v_c1 - 0.5 sin(2t); w_b2 = 0.1 t"
 OF_POINTS = {"duration": 1.0, "period": 0.1, "step": 0.1, "window": 0.5}
 
 
@@ -205,7 +205,7 @@ test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run = refuses(
     (observer_lab, {"motion": "sin(t)"}, "each line begins with what it gives, such as b3 = "),
     (observer_lab, {"motion": "b1 = 1 / (t - 1)", "duration": 2.0}, r"b1 is -?[\d.]+e\+\d+ at 1 s"),
     (observer_lab, {"motion": "b1 = sqrt(1 - t)", "duration": 2.0}, "b1 is nan at 1.004 s"),
-    (points_lab, {"motion": "w = [0, 0, 1/(t - 1.0031)]"}, r"w3 is -?[\d.]+e\+\d+ at 1.003 s"),
+    (points_lab, {"motion": "w_c = [0, 0, 1/(t - 1.0031)]"}, r"w_c3 is -?[\d.]+e\+\d+ at 1.003 s"),
     (observer_lab, {"motion": "b1 = tan(t)"}, r"b1 is -?[\d.]+e\+\d+ at 1.571 s"),
     (observer_lab, {"motion": "b = step([1, 2, 3])"}, "step is of one number"),
     (observer_lab, {"motion": "b1 = 1 if 2 else 0"}, '"if" is of a whole entry'),
@@ -215,7 +215,7 @@ test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run = refuses(
     (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
     (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),
     (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
-    (points_lab, {"weight": "typed", "P": "w1 = t"}, "P gives no value; it must be one expression"),
+    (points_lab, {"weight": "typed", "P": "w_c1 = t"}, "P gives no value; it must be one expression"),
     (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
     (points_lab, {"P": "[1, 1, 1 - t]"}, "P is .* at 1.02 s; it must be from 1e-9"),
     (points_lab, {"P": [1, 1]}, r"P is .*; it must be a number or a diagonal \[a, b, c\]"),
@@ -303,7 +303,10 @@ def test_what_cannot_be_run_is_refused_with_the_reason_before_the_lab_opens():
         ({"observers": [cubic, cubic]}, "there is an observer cubic already"),
         ({"observers": [3]}, "3 is no observer; bring its name, a function of a form, or an Observer"),
         ({"observers": "cubic"}, "it must be a list of names, functions of a form, or observers"),
-        ({"observers": [ibo(rigid_form)]}, r"made for a form with the parameters w1, .*PerspectiveSystem\(affine\(\)"),
+        (
+            {"observers": [ibo(rigid_form)]},
+            r"made for a form with the parameters w_c1, .*PerspectiveSystem\(affine\(\)",
+        ),
         ({"surface": deep}, "has 3 image coordinates; the lab draws images with two"),
         ({"surface": 4}, "surface is 4; bring an ImagingSurface"),
         ({"surface": "slanted"}, "surface is 'slanted'; it must be one of pinhole"),
@@ -348,7 +351,7 @@ def test_of_points_a_form_of_ones_own_agrees_or_is_refused(node):
         (own_form(coupled=True), {}, "only blocks of 3 x 3 on its diagonal"),
         (PointsForm(linear(states=3), np.eye(3)[None]), {}, "no expression in time for a11, a12"),
         (form, {"points": [[0.0, 0.0, 2.0]]}, "there are 1 points; it must be 2"),
-        (form, {"motion": "w1 = t"}, "it must be empty with your own form"),
+        (form, {"motion": "w_c1 = t"}, "it must be empty with your own form"),
         (PerspectiveSystem(affine(), pinhole()).measure("y1"), {}, r"form is a CanonicalForm; expected a PointsForm"),
         (5, {}, "form is the number 5; expected a PointsForm"),
     ):
@@ -418,7 +421,9 @@ def test_of_structure_a_choice_a_form_and_a_scenario_of_ones_own_open_the_lab(no
     found = unknowns_of(opened.settings)
     assert found.unknown == choice.unknown
     assert set(found.zero) >= set(choice.zero)
-    moving = rigid((0.1, 0.0, 0.2), (0.2, 0.0, -0.1), (0.05, 0.0, 0.1))
+    moving = rigid(
+        camera_angular_velocity=(-0.1, 0.0, -0.2), camera_velocity=(0.2, 0.0, -0.1), point_velocity=(0.05, 0.0, 0.1)
+    )
     mine = StructureScenario("mine", moving, (0.5, 0.4, 4.0), 0.3, pinhole(), scale=2.0, choice=choice)
     lab = structure_lab(mine, period=0.01, observers=["identifier_based"])
     (run,) = lab.run().values()
@@ -435,7 +440,12 @@ MEASURED = np.column_stack([-0.2 - 0.1 * np.sin(9 * STAMPS), 0.3 - STAMPS, 0 * S
 
 def velocities(v_c=MEASURED, times=STAMPS):
     """Velocities that a robot has measured; its object moves along an axis."""
-    return rigid([0.1, 0.0, -0.2], v_c, np.column_stack([0 * STAMPS, 0.2 * STAMPS, 0 * STAMPS])[: len(v_c)], times)
+    return rigid(
+        camera_angular_velocity=[-0.1, 0.0, 0.2],
+        camera_velocity=v_c,
+        point_velocity=np.column_stack([0 * STAMPS, 0.2 * STAMPS, 0 * STAMPS])[: len(v_c)],
+        times=times,
+    )
 
 
 @pytest.mark.slow
@@ -444,7 +454,11 @@ def test_of_structure_velocities_in_samples_agree_and_copied_code_makes_the_same
     motion = velocities()
     choice = StructureAndMotion(("d_s", "v_c2", "v_p3"), zero=("v_c3", "v_p1"))
     place = (0.5, 0.4, 4.0)
-    moved = rigid((0.1, 0, 0), lambda t: [0.2 + t, 0.1, 0.0], lambda t: [0.0, 0.1 * t, 0.0])
+    moved = rigid(
+        camera_angular_velocity=(-0.1, 0, 0),
+        camera_velocity=lambda t: [0.2 + t, 0.1, 0.0],
+        point_velocity=lambda t: [0.0, 0.1 * t, 0.0],
+    )
     mine, other = (
         StructureScenario("mine", m, place, 0.25, pinhole(), scale=2.0, choice=choice) for m in (motion, moved)
     )
@@ -484,7 +498,7 @@ def test_of_structure_samples_stay_apart_from_what_is_set():
     assert lab.model["standard"]["velocities"] == "set"
     lab.summary = {"serial": 1}
     assert "last tenth of the run" in lab.analysis["sentences"][0]
-    still = structure_lab(rigid([0.1, 0, 0], [0.2, 0, 0.1], [0, 0, 0]))
+    still = structure_lab(rigid(camera_angular_velocity=[-0.1, 0, 0], camera_velocity=[0.2, 0, 0.1]))
     assert (still.settings["velocities"], still.settings["v_c"]) == ("set", [0.2, 0.0, 0.1])
 
 
@@ -503,8 +517,8 @@ test_of_structure_samples_that_do_not_suit_are_refused_with_what_to_do = refuses
     (lambda: velocities(times=STAMPS + 7), {}, "from 7 to 7.3 s, but a run .* begins at 0 s; .*times - times.0."),
     (velocities, {"duration": 0.4}, "lasts 0.4 s, but the motion is sampled up to 0.3 s only; shorten the"),
     (velocities, {"motion": "v_c1 = t"}, "are those of your samples; leave it empty, or take velocities="),
-    (lambda: rigid([0, 0, 0], np.zeros((len(MANY), 3)), [0, 0, 0], MANY), {}, "1e.04 are allowed; bring fewer"),
-    (lambda: rigid([0, 0, 0], lambda t: [t, 0, 0], [0, 0, 0]), {}, "nothing says how long they last; bring samp"),
+    (lambda: rigid(camera_velocity=np.zeros((len(MANY), 3)), times=MANY), {}, "1e.04 are allowed; bring fewer"),
+    (lambda: rigid(camera_velocity=lambda t: [t, 0, 0]), {}, "nothing says how long they last; bring samp"),
     (affine, {}, "a motion 'affine' of a11, .* without numbers; bring rigid"),
     (lambda: None, {"velocities": "samples"}, "must be one of set; there is .* opened with rigid"),
 )

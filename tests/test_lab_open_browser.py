@@ -25,7 +25,7 @@ def type_in(page, text):
     [
         (observer_lab, "b1 = b1 + 0.2 sin(2t)", "b1 = 0.2 sni(2t)"),
         (structure_lab, "v_c1 = -0.22 - 0.1 sin(2t)", "v_c1 = -0.22 - 0.1 sni(2t)"),
-        (points_lab, "w3 = 0.5 cos(t)", "w3 = 0.5 sni(t)"),
+        (points_lab, "w_c3 = 0.5 cos(t)", "w_c3 = 0.5 sni(t)"),
     ],
 )
 def test_a_typed_motion_takes_effect_and_a_bad_one_is_told_with_its_place(show, make, text, bad):

@@ -9,7 +9,7 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-SWINGING = {"v_c_swing": [0.3, 0.2, -0.1], "v_p": [0.1, 0.0, 0.05], "w": [0.1, -0.2, 0.3]}
+SWINGING = {"v_c_swing": [0.3, 0.2, -0.1], "v_p": [0.1, 0.0, 0.05], "w_c": [0.1, -0.2, 0.3]}
 LABS = {
     "observer": lambda: observer_lab("ma2005_eq35"),
     "sphere": lambda: observer_lab(surface="sphere"),

@@ -19,7 +19,9 @@ def test_without_noise_the_point_is_found(surface):
 
 
 def test_a_varying_motion_is_followed_between_samples_too():
-    motion = rigid(lambda t: [0.1, 0.2 * np.sin(t), 0], lambda t: [np.cos(t), 0.3, 0], [0, 0, 0])
+    motion = rigid(
+        camera_angular_velocity=lambda t: [-0.1, -0.2 * np.sin(t), 0], camera_velocity=lambda t: [np.cos(t), 0.3, 0]
+    )
     scenario = Scenario("varying", motion, (0.5, 0, 4), 3, pinhole())
     recording = record(scenario, camera=Camera(period=0.1))
     found = moving_window_least_squares(recording, 1.0)

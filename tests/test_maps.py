@@ -30,7 +30,9 @@ from percept_obs.observability.maps import HIDDEN_VARIANCE, NOISE_VARIANCE, disp
 EQ35 = scenarios.ma2005_eq35().motion
 SYSTEM = PerspectiveSystem(EQ35, pinhole())
 FORWARDS = PerspectiveSystem(affine(np.zeros((3, 3)), [0.1, 0, -0.5]), pinhole())
-TURNING = rigid(lambda t: (0, 0.3 * np.sin(t), 0.1), lambda t: (0.3, 0, 0.1 + 0.1 * t), lambda t: (0, 0, 0))
+TURNING = rigid(
+    camera_angular_velocity=lambda t: (0, -0.3 * np.sin(t), -0.1), camera_velocity=lambda t: (0.3, 0, 0.1 + 0.1 * t)
+)
 
 
 @pytest.mark.parametrize("measured", [("y1", "y2"), ("y2",)], ids="+".join)

@@ -50,20 +50,20 @@ def test_sympy_columns_of_numbers_are_vectors():
     column = sp.Matrix([1, 2, 3])
     np.testing.assert_array_equal(affine(sp.Matrix(A), column).known(0.0), affine(A, b).known(0.0))
     np.testing.assert_array_equal(affine(A, lambda t: t * column).known(2.0), affine(A, 2 * b).known(0.0))
-    assert rigid(column, [0] * 3, [0] * 3).values[sp.Symbol("w3", real=True)] == 3
+    assert rigid(camera_angular_velocity=column).values[sp.Symbol("w_c3", real=True)] == 3
 
 
-def test_rigid_motion_turns_with_plus_w():
-    motion = rigid((0.1, 0.2, 0.3), (1, 2, 3), (4, 5, 6))
+def test_a_point_turns_against_the_camera():
+    motion = rigid(camera_angular_velocity=(0.1, 0.2, 0.3), camera_velocity=(1, 2, 3), point_velocity=(4, 5, 6))
     point = np.array([0.5, -1, 2])
     numbers = {s: v for s, v in motion.values.items()}
     rate = np.array(motion.A.subs(numbers) @ sp.Matrix(point) + motion.b.subs(numbers), dtype=float).ravel()
-    np.testing.assert_allclose(rate, np.cross([0.1, 0.2, 0.3], point) + 3.0)
+    np.testing.assert_allclose(rate, -np.cross([0.1, 0.2, 0.3], point) + 3.0)
 
 
 def test_columns_of_a_rigid_signal_are_in_the_order_of_its_parameters():
-    names = ["w1", "w2", "w3", "v_c1", "v_c2", "v_c3", "v_p1", "v_p2", "v_p3"]
-    motion = rigid((0.1, 0.2, 0.3), (1, 2, 3), (4, 5, 6))
+    names = ["w_c1", "w_c2", "w_c3", "v_c1", "v_c2", "v_c3", "v_p1", "v_p2", "v_p3"]
+    motion = rigid(camera_angular_velocity=(0.1, 0.2, 0.3), camera_velocity=(1, 2, 3), point_velocity=(4, 5, 6))
     assert [(str(s), v) for s, v in motion.values.items()] == [*zip(names, (0.1, 0.2, 0.3, *range(1, 7)), strict=True)]
 
 

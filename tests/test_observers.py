@@ -108,7 +108,7 @@ def test_an_error_without_dynamics_of_its_own(make):
 
 def test_lambdify_follows_a_motion_that_varies():
     system = PerspectiveSystem(MOTIONS["rigid"], SURFACES["pinhole"])
-    moving = rigid(lambda t: [0, 0, t], [1.0, 0, 0], [0, 0, 0])
+    moving = rigid(camera_angular_velocity=lambda t: [0, 0, -t], camera_velocity=[1.0, 0, 0])
     rhs = with_point(ibo(system.measure("y1", "y2"))).lambdify(moving)
     state = [0.1, 0.2, 0.5, 0.1, 0.2, 0.5]
     # y1' = -w3 y2 - v_c1 y3, and the observer, at the truth, moves alike

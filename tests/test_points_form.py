@@ -98,7 +98,7 @@ def test_a_rigid_body_moves_like_its_points():
 
 
 def test_independent_points_share_a_motion():
-    form = independent_points(rigid([0.1, 0.2, 0.3], [1, 2, 3], [0, 0, 0]), 2)
+    form = independent_points(rigid(camera_angular_velocity=[-0.1, -0.2, -0.3], camera_velocity=[1, 2, 3]), 2)
     A, v = (part[0] for part in form.coefficients(0.0))
     x = np.arange(6.0)
     for k in range(2):

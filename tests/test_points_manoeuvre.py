@@ -23,10 +23,10 @@ def test_a_point_that_begins_on_the_path_stays_on_it_however_the_camera_turns(tu
 
 
 def test_each_part_is_taken_by_its_share():
-    half = Manoeuvre(turning=0.5, spin=-2, input=0, velocity=(0.1, 0.2, 0.3))
+    half = Manoeuvre(turning=0.5, spin=-2, input=0, camera_velocity=(0.1, 0.2, 0.3))
     camera_turns, camera_moves, body_turns = half.velocities
-    assert sp.Matrix(camera_turns) == -sp.Matrix(TURNING) * 0.5
-    assert [float(v) for v in camera_moves] == [-0.1, -0.2, -0.3]
+    assert sp.Matrix(camera_turns) == sp.Matrix(TURNING) * 0.5
+    assert [float(v) for v in camera_moves] == [0.1, 0.2, 0.3]
     assert sp.Matrix(body_turns) == -2 * sp.Matrix(SPIN)
 
 

@@ -64,6 +64,6 @@ def test_the_derivation_names_what_it_finds():
 
 
 def test_rays_turn_by_what_lies_across_them():
-    form = independent_points(rigid([1.0, 2, 3], [0, -0.3, 0.1], [0, 0, 0]), 2)
+    form = independent_points(rigid(camera_angular_velocity=[-1.0, -2, -3], camera_velocity=[0, -0.3, 0.1]), 2)
     turning = ray_turning(form, np.zeros(1), np.array([[0.0, 0, 3, 0, 4, 0]]))
     np.testing.assert_allclose(turning, [[0.3 / 3, 0.1 / 4]])

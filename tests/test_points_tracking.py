@@ -38,7 +38,9 @@ def body(points=1, duration=4.0, period=0.01):
 
 def turning(points=2, duration=4.0, **settings):
     """Points of their own before a camera that turns and moves."""
-    form = independent_points(rigid([0.05, -0.1, 0.2], [0.6, -0.3, 0.05], [0, 0, 0]), points)
+    form = independent_points(
+        rigid(camera_angular_velocity=[-0.05, 0.1, -0.2], camera_velocity=[0.6, -0.3, 0.05]), points
+    )
     places = [[0.4 * k - 0.3, 0.2 * k, 3.0 + k] for k in range(points)]
     return record(PointsScenario("turning", form, np.ravel(places), duration), **settings)
 
@@ -144,7 +146,7 @@ def test_lost_samples_hardly_matter():
 
 
 def test_points_behind_the_camera_and_outside_of_its_view_are_not_seen():
-    form = independent_points(rigid([0.0, 0, 0], [0, 0, 1.0], [0, 0, 0]), 2)
+    form = independent_points(rigid(camera_velocity=[0, 0, 1.0]), 2)
     scenario = PointsScenario("passing", form, [0.5, 0, 2, 0.5, 0, 9], 4.0)
     whole = record(scenario)
     assert whole.seen[:, 1].all()

@@ -175,7 +175,8 @@ def too_slow(found, half_width):
     path, count = found.path().at(found.time), 2 * half_width + 1
     step = found.time[1] - found.time[0]
     speed = savgol_filter(found.position, count, 2, deriv=1, delta=step, axis=0)
-    return rigid(-path.angular_velocity, found.rotation.inv().apply(speed), np.zeros(3), times=found.time)
+    speed = found.rotation.inv().apply(speed)
+    return rigid(camera_angular_velocity=path.angular_velocity, camera_velocity=speed, times=found.time)
 
 
 @pytest.mark.slow

@@ -143,7 +143,7 @@ test_what_is_no_recording_is_refused = refuses(
     ({"distances": {"stereo": [1, 2]}}, "must be positive numbers or NaN, of shape \\(3,\\)"),
     ({"distances": {"stereo": [1, 2, -1]}}, "must be positive numbers or NaN, of shape \\(3,\\)"),
     ({"motion": affine()}, "no values for a11"),
-    ({"motion": rigid(np.zeros((2, 3)), np.zeros(3), np.zeros(3), times=[0, 0.2])}, r"known from 0 to 0\.2 s"),
+    ({"motion": rigid(camera_angular_velocity=np.zeros((2, 3)), times=[0, 0.2])}, r"known from 0 to 0\.2 s"),
 )
 
 

@@ -79,11 +79,13 @@ def test_two_per_cent_of_b3_are_predicted_before_they_are_run(make):
 
 
 def test_a_motion_that_varies_is_differentiated_as_well():
-    path = rigid(lambda t: [0.0, 0.1 * np.sin(t), 0.0], lambda t: [np.cos(t), 0.0, 0.2], lambda t: [0.0, 0.0, 0.0])
+    path = rigid(
+        camera_angular_velocity=lambda t: [0.0, -0.1 * np.sin(t), 0.0], camera_velocity=lambda t: [np.cos(t), 0.0, 0.2]
+    )
     moved = replace(scenarios.ma2005_eq35(), motion=path)
     recording = record(moved, 3)
     observer = ekf(RIGID)
-    found = sensitivity(recording, observer, {"y3": 0.4}, ("w2", "v_c3"))
+    found = sensitivity(recording, observer, {"y3": 0.4}, ("w_c2", "v_c3"))
     for k, entry in enumerate(found.entries):
         expected = slope(recording, observer, {"y3": 0.4}, entry)
         np.testing.assert_allclose(found.derivatives[:, :, k], expected, atol=1e-5 * np.abs(expected).max())
@@ -106,7 +108,7 @@ def test_what_makes_no_sense_is_refused():
         (lambda: sensitivity(RECORDING, observer, entries=("b4",)), "no entry b4; it has a11"),
         (lambda: sensitivity(RECORDING, observer, entries=()), "has no entry"),
         (lambda: sensitivity(RECORDING, observer, believed=affine()), "no entries with numbers"),
-        (lambda: misbelieved(RECORDING.motion, w1=1.0), "no entry w1"),
+        (lambda: misbelieved(RECORDING.motion, w_c1=1.0), "no entry w_c1"),
         (lambda: sensitivity(RECORDING, observer, ZERO, ("b3",)).change(b1=1.0), "no entry b1; it has b3"),
         (lambda: variation(observer.equations, observer.equations.state[:1]), "no parameter"),
         (lambda: entries(sensitivity(RECORDING, observer, entries=("b3",)), most=0), "draw one at least"),

@@ -23,10 +23,10 @@ def run(depth, **settings):
 
 
 def test_the_derived_interaction_matrix_is_the_printed_one():
-    """Chaumette and Hutchinson 2006, with the camera's own angular velocity, which is -w."""
+    """Chaumette and Hutchinson 2006, with the camera's own angular velocity."""
     y1, y2, y3 = FORM.coordinates
     printed = [[-y3, 0, y1 * y3, y1 * y2, -1 - y1**2, y2], [0, -y3, y2 * y3, 1 + y2**2, -y1 * y2, -y1]]
-    assert (servoing.INTERACTION * sp.diag(1, 1, 1, -1, -1, -1) - sp.Matrix(printed)).expand().is_zero_matrix
+    assert (servoing.INTERACTION - sp.Matrix(printed)).expand().is_zero_matrix
 
 
 def test_with_the_true_depth_the_image_error_decays_exponentially():

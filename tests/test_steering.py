@@ -105,7 +105,13 @@ def test_gradient_and_matrix_belong_to_the_excitation():
 def test_a_rigid_motion_is_steered_by_its_camera():
     found = steering(PerspectiveSystem(rigid(), pinhole()))
     assert [symbol.name for symbol in found.velocity] == ["v_c1", "v_c2", "v_c3"]
-    scenario = Scenario("turning", rigid([0, 0.1, 0], [0.05, 0, 0.3], [0, 0, 0]), (0.3, 0.1, 4), 3, pinhole())
+    scenario = Scenario(
+        "turning",
+        rigid(camera_angular_velocity=[0, -0.1, 0], camera_velocity=[0.05, 0, 0.3]),
+        (0.3, 0.1, 4),
+        3,
+        pinhole(),
+    )
     moved = steered(scenario).motion.known(np.array([0.0, 3.0]))
     np.testing.assert_allclose(moved[:, :3], [[0, 0.1, 0]] * 2)
     assert abs(moved[1, 5]) < 0.15

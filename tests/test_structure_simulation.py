@@ -54,7 +54,7 @@ def test_a_recording_of_a_choice_holds_what_it_may_know():
     assert recording.truth.shape == (1001, 6)
     np.testing.assert_allclose(recording.truth[:, 3:], [[10.4, -0.23 * 10.4, 0]] * 1001)
     # of the motion, the unknown velocities are not there
-    assert [s.name for s in recording.motion.parameters] == ["w1", "w2", "w3", "v_c1"]
+    assert [s.name for s in recording.motion.parameters] == ["w_c1", "w_c2", "w_c3", "v_c1"]
     np.testing.assert_allclose(recording.truth[0, :3], [0.32, 0.30, 0.05])
     np.testing.assert_allclose(recording.points[0], np.array([0.32, 0.30, 1]) / 0.52)
     known = record(chwa2019_experiment("VI.B"), 1)
@@ -198,7 +198,7 @@ def test_what_does_not_fit_is_refused():
         (DoesNotFit, lambda: track(of_images, ismo(CASE.choice.form)), "was made for the scaled pinhole"),
         (ValueError, lambda: moving_window_least_squares(recording, 0.5), "but the recording shows the scaled pinhole"),
         (ValueError, lambda: linear_view(of_images), "the linear view needs the outputs y1, y2, ybar3"),
-        (ValueError, lambda: seen_as(recording, unscaled, rigid(STILL, STILL, STILL)), "has no values for d_s; give"),
+        (ValueError, lambda: seen_as(recording, unscaled, rigid(point_velocity=STILL)), "has no values for d_s; give"),
     ):
         with pytest.raises(error, match=message):
             call()
@@ -220,7 +220,7 @@ test_scenarios_that_make_no_sense_are_refused = refuses(
 
 
 def test_a_point_that_comes_behind_the_camera_is_refused():
-    towards = replace(CASE, motion=rigid(STILL, (0.1, 0, 1.0), STILL), position=(0, 0, 1), scale=1.0)
+    towards = replace(CASE, motion=rigid(camera_velocity=(0.1, 0, 1.0)), position=(0, 0, 1), scale=1.0)
     with pytest.raises(BehindCamera, match="only points at a positive distance are seen"):
         record(towards, 2.0)
 
@@ -236,7 +236,12 @@ def test_a_patch_begins_at_the_tracked_point_and_is_flat():
 def test_sampled_velocities_serve_as_well_as_functions():
     time = np.linspace(0, 1, 101)
     samples = np.column_stack([0.3 + 0 * time, 0.1 * time, -0.1 * time])
-    sampled = rigid(np.zeros((101, 3)), samples, np.zeros((101, 3)), times=time)
+    sampled = rigid(
+        camera_angular_velocity=np.zeros((101, 3)),
+        camera_velocity=samples,
+        point_velocity=np.zeros((101, 3)),
+        times=time,
+    )
     known = CASE.choice.known_motion(sampled)
     np.testing.assert_allclose(known.known([0.0, 0.5]), [[0, 0, 0, 0.3]] * 2)
     recording = record(replace(CASE, motion=sampled, position=(1, 1, 4), duration=1.0, scale=2.0))
@@ -247,7 +252,7 @@ def test_a_recording_from_real_outputs():
     """Nothing is asked of what is unknown."""
     choice = COROLLARIES[0].choice()
     made = record(CASE, 2)
-    motion = choice.known_motion(rigid(STILL, (-0.22, 9.9, 9.9), STILL))
+    motion = choice.known_motion(rigid(camera_velocity=(-0.22, 9.9, 9.9)))
     recording = Recording(made.time, made.outputs, made.names, choice, motion)
     assert recording.truth is None
     run = track(recording, ismo(choice.form), hold="first", step=1e-3)

@@ -213,7 +213,7 @@ def test_the_claimed_covariance():
         (ibo(PerspectiveSystem(affine(), chained()).measure("y1")), {}, DoesNotFit, "made for the chained surface"),
         (ibo(PerspectiveSystem(rigid(), pinhole()).measure("y1")), {}, DoesNotFit, "same kind of motion"),
         (ibo(ONE), {"believed": affine()}, ValueError, "no values for a11"),
-        (ibo(ONE), {"believed": rigid([0] * 3, [0] * 3, [0] * 3)}, DoesNotFit, "same kind of motion"),
+        (ibo(ONE), {"believed": rigid(point_velocity=[0] * 3)}, DoesNotFit, "same kind of motion"),
         (ibo(ONE), {"hold": "second"}, ValueError, "none of 'zero', 'first' and 'exact'"),
         (ibo(ONE), {"step": 0.0}, ValueError, "must be positive"),
         (ibo(ONE), {"step": np.nan}, ValueError, "must be positive"),

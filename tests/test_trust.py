@@ -56,7 +56,7 @@ def test_a_longer_window_that_tells_something_else_is_said():
 
 def paused(truth=True):
     """A camera that stands for 1.6 s and then moves."""
-    motion = rigid(STILL, lambda t: [0.4 * max(0, -np.cos(t)), 0, 0], STILL)
+    motion = rigid(camera_velocity=lambda t: [0.4 * max(0, -np.cos(t)), 0, 0])
     seen = record(Scenario("paused", motion, (0.6, 0.2, 3), 4, pinhole()), camera=Camera(0.05, Gaussian(0.002)), seed=1)
     return seen if truth else replace(seen, truth=None, signal=None)
 

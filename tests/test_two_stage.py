@@ -53,7 +53,7 @@ def test_a_camera_that_changes_its_velocity_needs_it_anew():
 @pytest.mark.slow
 def test_unknown_velocities_of_the_motion_are_not_used(wandering):
     setup, recording = wandering
-    believed = rigid((0, 0, 0), (0.3, 9.0, 9.0), (0, 0, 0))
+    believed = rigid(camera_velocity=(0.3, 9.0, 9.0))
     run = semigeneral(recording, believed, 5.0, **fine)
     assert worst(run, setup, 1.0) < 1e-3
 
@@ -88,4 +88,4 @@ def test_a_first_stage_without_a_scale_says_so():
     setup = chwa2019_semigeneral("simulation")
     recording = record(setup, 3, ScaledDepthCamera(depth=GivenDepth()))
     with pytest.raises(ValueError, match=r"in the last 0.5 s before 2.0 s there is no estimate of a positive d_s"):
-        semigeneral(recording, rigid((0, 0, 0), (-0.3, 0, 0), (0, 0, 0)), 2.0, COROLLARIES[0].choice(), **fine)
+        semigeneral(recording, rigid(camera_velocity=(-0.3, 0, 0)), 2.0, COROLLARIES[0].choice(), **fine)

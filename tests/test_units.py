@@ -60,7 +60,10 @@ NOISE = Gaussian(0.003)
 def scene(unit, varying=False):
     """A scene with all of its lengths in a unit of which so many make a metre."""
     if varying:
-        moving = rigid(lambda t: [0.1 * np.sin(t), 0.2, 0.1], lambda t: [unit * np.cos(t), 0.2 * unit, 0], [0, 0, 0])
+        moving = rigid(
+            camera_angular_velocity=lambda t: [-0.1 * np.sin(t), -0.2, -0.1],
+            camera_velocity=lambda t: [unit * np.cos(t), 0.2 * unit, 0],
+        )
         return Scenario("varying", moving, (0.3 * unit, -0.2 * unit, 4 * unit), 4, pinhole(), unit=unit)
     plain = scenarios.ma2005_eq35()
     A, b = np.split(plain.motion.known(0.0)[0], [9])
@@ -232,7 +235,8 @@ def test_structure_and_motion_obey_the_law(make, section):
     plain = chwa2019_experiment(section)
 
     def ask(view, unit):
-        moving = rigid(*np.split(plain.motion.known(0.0)[0] * np.repeat([1, unit, unit], 3), 3))
+        numbers = np.split(plain.motion.known(0.0)[0] * np.repeat([1, unit, unit], 3), 3)
+        moving = rigid(camera_angular_velocity=numbers[0], camera_velocity=numbers[1], point_velocity=numbers[2])
         place, scale = unit * np.array(plain.position), plain.scale / unit
         choice = replace(plain.choice, scale=plain.choice.scale and scale)
         made = StructureScenario("scaled", moving, place, 1, pinhole(), unit=unit, scale=scale, choice=choice)
@@ -283,7 +287,10 @@ def test_only_the_last_coordinate_of_a_surface_has_a_length(surface):
 def test_default_gains_suit_a_recordings_own_unit(unit, depth, speed):
     """A scene in other sizes: with speed over depth as it is, only the unit says what is large."""
     fast = speed * unit
-    moving = rigid(lambda t: [0.1 * np.sin(t), 0.1, 0], lambda t: [fast * np.cos(t / 2), 0.3 * fast, 0], [0, 0, 0])
+    moving = rigid(
+        camera_angular_velocity=lambda t: [-0.1 * np.sin(t), -0.1, 0],
+        camera_velocity=lambda t: [fast * np.cos(t / 2), 0.3 * fast, 0],
+    )
     made = Scenario("own", moving, np.array([0.2, -0.1, 1]) * depth * unit, 5, pinhole())
     recording = record(made, camera=Camera(0.05, NOISE)).in_own_unit()
     assert recording.unit == pytest.approx(recording.motion.speed(recording.time) / 0.6)

@@ -127,7 +127,7 @@ test_what_has_no_sense_is_refused_in_a_sentence = refuses(
     (lambda: at_time(0, 0, 1 / TIME), "it changes too fast: slow it down"),
     (lambda: at_time(sp.sin(10**6 * TIME), 0, 0), "it changes too fast: slow it down"),
     (lambda: affine(np.eye(3), lambda: 1), "the motion's b .* must be a function of a time alone: too many"),
-    (lambda: PointsForm(rigid([0, 0, 1], [0, 0, 0], [0, 0, 0]), np.zeros((2, 3, 3))), "a block of C is 0"),
+    (lambda: PointsForm(rigid(camera_angular_velocity=[0, 0, -1]), np.zeros((2, 3, 3))), "a block of C is 0"),
     (lambda: summary(pd.DataFrame({"a": [1]})), "the table has no columns cost, .*; give one from compare"),
     (lambda: render(SHORT, 0), "0 frames of 160 pixels a side are none"),
     (lambda: render(SHORT, size=10**6), "pixels, from 11 frames of the size 1000000, "),
@@ -171,7 +171,7 @@ def test_a_constant_motion_is_exact_however_fast():
     for w in (1.0, 57.3, 200.0, 5000.0):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", AreTheseDegrees)
-            circle = Scenario("circle", rigid([0, 0, w], np.zeros(3), np.zeros(3)), (1, 0, 2), 1, pinhole())
+            circle = Scenario("circle", rigid(camera_angular_velocity=[0, 0, -w]), (1, 0, 2), 1, pinhole())
         times = np.linspace(0, 20, 401)
         expected = np.stack([np.cos(w * times), np.sin(w * times), 2 + 0 * times], axis=-1)
         np.testing.assert_allclose(circle.points(times), expected, atol=1e-13 * (1 + 20 * w))
@@ -180,7 +180,7 @@ def test_a_constant_motion_is_exact_however_fast():
 def test_a_motion_that_varies_is_as_exact():
     """A turn of rate 40 cos(5 t) about the axis has the angle 8 sin(5 t)."""
     times = np.linspace(0, 1, 101)
-    turn = rigid(lambda t: [0, 0, 40 * np.cos(5 * t)], np.zeros(3), np.zeros(3))
+    turn = rigid(camera_angular_velocity=lambda t: [0, 0, -40 * np.cos(5 * t)])
     angle = 8 * np.sin(5 * times)
     expected = np.stack([np.cos(angle), np.sin(angle), 2 + 0 * times], axis=-1)
     found = Scenario("swing", turn, (1, 0, 2), 3, pinhole()).points(times)
@@ -197,7 +197,7 @@ def test_a_motion_that_changes_too_fast_is_refused(monkeypatch):
 
 @pytest.mark.parametrize("period", [1.0, 0.5])
 def test_a_dip_behind_the_camera_between_samples_is_seen(period):
-    around = rigid([0, 2 * np.pi / period, 0], np.zeros(3), np.zeros(3))
+    around = rigid(camera_angular_velocity=[0, -2 * np.pi / period, 0])
     dips = Scenario("dips", around, (0, 0, 1), 3, pinhole())
     with pytest.raises(BehindCamera, match="'dips' the point dips behind the pinhole between two samples, at about"):
         record(dips, camera=Camera(period))
@@ -207,14 +207,14 @@ def test_a_dip_behind_the_camera_between_samples_is_seen(period):
 
 def test_degrees_are_asked_for():
     with pytest.warns(AreTheseDegrees, match=r"30 rad/s.*were degrees meant.*np.radians"):
-        rigid([0, 0, 30], np.zeros(3), np.zeros(3))
+        rigid(camera_angular_velocity=[0, 0, -30])
     with pytest.warns(AreTheseDegrees):
-        rigid(np.full((3, 3), 20.0), np.zeros(3), np.zeros(3), times=[0, 1, 2])
-    turning = rigid(lambda t: [0, 0, 30 * t], np.zeros(3), np.zeros(3))
+        rigid(camera_angular_velocity=np.full((3, 3), 20.0), times=[0, 1, 2])
+    turning = rigid(camera_angular_velocity=lambda t: [0, 0, -30 * t])
     with pytest.warns(AreTheseDegrees) as told:
         record(Scenario("turns", turning, (1, 0, 2), 1, pinhole()), camera=Camera(0.1))
     assert told[0].filename == __file__
-    rigid([0, 0, 20], np.zeros(3), np.zeros(3))
+    rigid(camera_angular_velocity=[0, 0, -20])
 
 
 def test_an_array_is_looked_at_once_by_the_type_of_its_entries():

@@ -352,7 +352,7 @@ def test_pixels_and_a_hole_in_the_motion_are_noticed():
     times = times[(times < 2) | (times > 3.5)]
     zero = np.zeros(3)
     with pytest.warns(Unlikely, match=r"between 1.95 and 3.55 s after the first sample the motion was not sampled"):
-        replace(recording, motion=rigid(np.tile(zero, (len(times), 1)), zero, zero, times))
+        replace(recording, motion=rigid(camera_angular_velocity=np.tile(zero, (len(times), 1)), times=times))
 
 
 @pytest.mark.parametrize(("weight", "resolved"), [(0.0025, False), (0.0055, False), (0.006, True), (0.02, True)])

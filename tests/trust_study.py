@@ -4,7 +4,7 @@ import warnings
 from dataclasses import replace
 
 import numpy as np
-from distrust_study import GAINS, REST, place_across, waves
+from distrust_study import GAINS, place_across, waves
 from scipy.spatial.transform import Rotation
 
 from percept_obs import Camera, Gaussian, PerspectiveSystem, Uniform, pinhole, record, rigid, track
@@ -25,7 +25,7 @@ def drawn(seed):
         direction = draw.normal(size=3)
         speed = unit * 10 ** draw.uniform(-3, 0.3)
         velocity = speed * direction / np.linalg.norm(direction)
-        turning = draw.normal(size=3) * draw.choice([0.0, 0.05, 0.2])
+        turning = -draw.normal(size=3) * draw.choice([0.0, 0.05, 0.2])
         place = depth * np.array([*draw.uniform(-0.4, 0.4, 2), 1.0])
         duration, period = draw.uniform(4, 12), draw.choice([0.01, 0.02, 0.05])
         sigma = 10 ** draw.uniform(-4, -2)
@@ -33,7 +33,9 @@ def drawn(seed):
         form = FORMS[draw.choice(3, p=[0.7, 0.15, 0.15])]
         able = [make for make in OBSERVERS if not make.refusal(form)]
         make = able[draw.integers(len(able))]
-        scenario = Scenario("drawn", rigid(turning, velocity, [0, 0, 0]), place, duration, pinhole())
+        scenario = Scenario(
+            "drawn", rigid(camera_angular_velocity=turning, camera_velocity=velocity), place, duration, pinhole()
+        )
         try:
             recording = record(scenario, camera=Camera(period, noise), seed=int(seed))
         except BehindCamera:
@@ -79,7 +81,7 @@ def believed(draw, poses, turning, velocity, duration):
     w, v = (np.array([each(t) for t in times]) for each in (turning, velocity))
     if poses == "noisy":
         speed = np.sqrt((v**2).sum(axis=1).mean())
-        w = w + draw.normal(0, draw.uniform(0.005, 0.05), w.shape)
+        w = w - draw.normal(0, draw.uniform(0.005, 0.05), w.shape)
         v = v + draw.normal(0, speed * draw.uniform(0.01, 0.1), v.shape)
     if poses == "drifting":
         v = v * (1 + 0.4 * np.clip(times / duration, 0, 1))[:, None]
@@ -87,7 +89,7 @@ def believed(draw, poses, turning, velocity, duration):
         axis = draw.normal(size=3)
         turn = Rotation.from_rotvec(np.radians(draw.uniform(0.3, 2)) * axis / np.linalg.norm(axis))
         w, v = turn.apply(w), turn.apply(v)
-    return rigid(w, v, REST, times)
+    return rigid(camera_angular_velocity=w, camera_velocity=v, times=times)
 
 
 def posed(seed, poses, sigma=None):
@@ -96,12 +98,14 @@ def posed(seed, poses, sigma=None):
     while True:
         depth, speed = draw.uniform(2, 6), draw.uniform(0.3, 0.7)
         place = depth * np.array([*draw.uniform(-0.3, 0.3, 2), 1.0])
-        turning, velocity = waves(draw, draw.choice([0.0, 0.1, 0.2])), waves(draw, speed)
+        turning, velocity = waves(draw, -draw.choice([0.0, 0.1, 0.2])), waves(draw, speed)
         if draw.random() < 0.3:
             w, v = turning(0.0), speed * place_across(draw, place)
             turning, velocity = (lambda t, w=w: w), (lambda t, v=v: v)
         noise, duration = Gaussian(sigma or 10 ** draw.uniform(-3.3, -2.3)), draw.uniform(5, 8)
-        scenario = Scenario(poses, rigid(turning, velocity, REST), place, duration, pinhole())
+        scenario = Scenario(
+            poses, rigid(camera_angular_velocity=turning, camera_velocity=velocity), place, duration, pinhole()
+        )
         try:
             seen = record(scenario, camera=Camera(draw.choice([0.02, 0.04]), noise), seed=seed)
         except BehindCamera:

@@ -250,11 +250,10 @@ def rate_of(token: str) -> str:
 
 
 def other_names(name: str) -> list[str]:
-    """Return other spellings: omega for w, x, y, z for 1, 2, 3, dy3dt for the rate of y3, lambda for its estimate."""
-    found = [re.sub("omega", "w", name), re.sub(r"^(lambda\d?)hat", r"\1", name)]
-    found.append(
-        re.sub(r"^(omega|w|vc|vp)([xyz])", lambda f: f[1].replace("omega", "w") + str("xyz".index(f[2]) + 1), name)
-    )
+    """Return other spellings: omega or w for w_c, x, y, z for 1, 2, 3, dy3dt for the rate of y3, lambda for its hat."""
+    numbered = re.sub(r"^(omega|wc?|vc|vp)([xyz])", lambda f: f[1] + str("xyz".index(f[2]) + 1), name)
+    found = [re.sub(r"^(lambda\d?)hat", r"\1", name), numbered, re.sub("omega", "w", numbered)]
+    found.append(re.sub(r"omega|^w(?!c)", "wc", numbered))
     found.append(re.sub(r"^(k\d|xf|R|Omegag)bar$|^(xO)q$|^(I)n$", r"\1\2\3", name))  # of the papers
     if quotient := re.fullmatch(r"d(\w+)dt", name):
         found.append(key(f"{quotient[1]}dot"))

@@ -25,7 +25,7 @@ from percept_obs.system.surfaces import plane
 @cache
 def _conventions() -> tuple[Convention, ...]:
     turn, normal, d = rigid().parameters[:3], plane().parameters, sp.Symbol("d", real=True)
-    world = "your angular velocity is the camera's, that of the package turns the world: w has the other sign"
+    world = "your angular velocity turns the world, that of the package is the camera's: w_c has the other sign"
     return (
         Convention(world, {w: -w for w in turn}),
         Convention("your image plane is n . X = d, that of the package n . X = 1", {n: n / d for n in normal}),

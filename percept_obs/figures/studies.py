@@ -418,7 +418,8 @@ def causes(found: Diagnosis, ax: Axes | None = None) -> Drawing:
     >>> import numpy as np
     >>> from percept_obs import Camera, Gaussian, Scenario, diagnose, figures, pinhole, record, rigid
     >>> def motion(late=0):
-    ...     return rigid(lambda t: [0.3 * np.sin(2 * t - 2 * late), 0.3 * np.cos(t - late), 0], [1, 0, 0], [0, 0, 0])
+    ...     turning = lambda t: [-0.3 * np.sin(2 * t - 2 * late), -0.3 * np.cos(t - late), 0]
+    ...     return rigid(camera_angular_velocity=turning, camera_velocity=[1, 0, 0])
     >>> scene = Scenario("mine", motion(), (0.2, 0.1, 5), 4, pinhole())
     >>> seen = record(scene, camera=Camera(0.05, Gaussian(0.002)))
     >>> figures.causes(diagnose(replace(seen, motion=motion(0.1)))).figure.axes[0].get_yticklabels()[0]

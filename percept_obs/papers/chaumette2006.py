@@ -30,9 +30,9 @@ RATIOS = (1 / 4, 1 / 2, 1, 2, 4)
 
 @cache
 def derived() -> Values:
-    """Rates of the image of a point at rest, by the velocities of the camera; the package's w turns the world."""
+    """Rates of the image of a point at rest, by the velocities of the camera."""
     letters = dict(zip(SYSTEM.coordinates, (x, y, 1 / Z), strict=True))
-    velocities = sp.ImmutableMatrix([*VELOCITY, *(-turn for turn in TURNING)])
+    velocities = sp.ImmutableMatrix([*VELOCITY, *TURNING])
     rates = INTERACTION.xreplace(letters) * velocities
     return dict(zip((dot(x), dot(y)), (rate.expand() for rate in rates), strict=True))
 

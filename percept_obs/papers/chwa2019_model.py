@@ -12,16 +12,20 @@ from percept_obs.checking.lines import EQUATION, Line
 from percept_obs.papers.base import column, dot, identities, reader, vectors
 from percept_obs.papers.entries import Finding, Known, Printed, Values, Verdict, at, judged
 from percept_obs.structure import COROLLARIES, scaled_dynamics
-from percept_obs.structure.dynamics import OUTPUTS, d_s
+from percept_obs.structure.dynamics import CAMERA, OBJECT, OUTPUTS, ROTATION, d_s
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.surfaces.base import POINT, Z
 
-SYSTEM = PerspectiveSystem(rigid(), pinhole())
+TURNING = w1, w2, w3 = sp.symbols("w1:4", real=True)
+"""The paper's w, minus the package's w_c."""
+MINUS = {w_c: -w for w_c, w in zip(ROTATION, TURNING, strict=True)}
+"""What the package's letters are in the paper's."""
+SYSTEM = PerspectiveSystem(rigid(chwa_rotation=TURNING, camera_velocity=CAMERA, point_velocity=OBJECT), pinhole())
 
 # Numbers
-w1, w2, w3, v_c1, v_c2, v_c3, v_p1, v_p2, v_p3 = SYSTEM.motion.parameters
+v_c1, v_c2, v_c3, v_p1, v_p2, v_p3 = (*CAMERA, *OBJECT)
 y1, y2, y3 = SYSTEM.coordinates
 _, _, ybar3 = OUTPUTS
 t = sp.Symbol("t", real=True)
@@ -41,8 +45,8 @@ def letters(name: str) -> sp.ImmutableMatrix:
 
 
 def cross(vector: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """Matrix of the cross product, as the package's rigid motion has it."""
-    return SYSTEM.motion.A.xreplace(dict(zip((w1, w2, w3), vector, strict=True)))
+    """Matrix of the cross product, as the rigid motion has it."""
+    return SYSTEM.motion.A.xreplace(dict(zip(TURNING, vector, strict=True)))
 
 
 def in_pixels() -> Values:
@@ -54,13 +58,13 @@ def in_pixels() -> Values:
 
 @cache
 def in_motion() -> Values:
-    """The package's rigid motion."""
+    """The package's rigid motion, in the paper's letters."""
     motion = SYSTEM.motion
     return {
         mbar: column(*POINT),
         dot(mbar): motion.A * column(*POINT) + motion.b,
         w_cross: motion.A,
-        w: column(w1, w2, w3),
+        w: column(*TURNING),
         v_c: column(v_c1, v_c2, v_c3),
         v_p: column(v_p1, v_p2, v_p3),
         v_r: motion.b,
@@ -127,8 +131,8 @@ def split_as(number: int) -> Callable[[], Values]:
         form, dynamics = choice.form, scaled_dynamics()
         absent = dict.fromkeys((sp.Symbol(name, real=True) for name in choice.zero), sp.S.Zero)
         return {
-            dot(ybar): dynamics.rate.xreplace(absent),
-            Omega: form.phi,
+            dot(ybar): dynamics.rate.xreplace(absent | MINUS),
+            Omega: form.phi.xreplace(MINUS),
             g: form.w.T * column(*choice.theta),
             **omegas(),
             v_c: column(v_c1, v_c2, v_c3),
@@ -140,8 +144,8 @@ def split_as(number: int) -> Callable[[], Values]:
 
 def omegas() -> Values:
     """The three matrices, the second one times w."""
-    dynamics, turning = scaled_dynamics(), column(w1, w2, w3)
-    return {Omega1: dynamics.camera, w: turning, Omega2: dynamics.rotation * turning, Omega3: dynamics.object}
+    dynamics, turning = scaled_dynamics(), column(*TURNING)
+    return {Omega1: dynamics.camera, w: turning, Omega2: -dynamics.rotation * turning, Omega3: dynamics.object}
 
 
 def all_have_full_rank(printed: Printed) -> Finding:

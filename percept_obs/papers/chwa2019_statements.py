@@ -22,7 +22,7 @@ from percept_obs.structure.dynamics import OUTPUTS, d_s
 from percept_obs.structure.scenarios import chwa2019_experiment
 
 y1, y2, ybar3 = OUTPUTS
-w1, w2, w3 = MOTION[:3]
+TURNING = MOTION[:3]
 s_e, s, t = sp.symbols("s_e s t", real=True)
 y3 = sp.Symbol("y3", real=True)
 Omega2 = sp.MatrixSymbol("Omega2", sp.Integer(3), sp.Integer(1))
@@ -55,7 +55,7 @@ def known_scale() -> Values:
 
 def does_not_turn() -> Values:
     """Omega_2 of a camera and object that do not turn."""
-    return {Omega2: (scaled_dynamics().rotation * column(w1, w2, w3)).xreplace(dict.fromkeys((w1, w2, w3), sp.S.Zero))}
+    return {Omega2: (scaled_dynamics().rotation * column(*TURNING)).xreplace(dict.fromkeys(TURNING, sp.S.Zero))}
 
 
 def largest_until(since: float) -> tuple[float, float]:

@@ -42,11 +42,11 @@ f = sp.Symbol("f", positive=True)
 gamma, t, T = sp.symbols("gamma t T", positive=True)
 reads = reader(f)
 
-# The package's w turns the world, and its point may move as well.
+# The package's point may move as well.
 LETTERS: Values = dict(
     zip(
         (*FORM.coordinates, *OBSERVER.equations.state, *OBSERVER.error, *FORM.parameters),
-        (*STATE, *ESTIMATE, *ERROR, *(-turn for turn in TURNING), *VELOCITY, 0, 0, 0),
+        (*STATE, *ESTIMATE, *ERROR, *TURNING, *VELOCITY, 0, 0, 0),
         strict=True,
     )
 )
@@ -107,7 +107,13 @@ def excites(printed: Printed) -> Finding:
 
 def from_near_and_far(printed: Printed) -> Finding:
     """One approach, two starts: the estimate settles from 1/Z = 0 and leaves all bounds from 5/m, 0.2 m."""
-    approach = Scenario("approach", rigid((0, 0.05, 0), (0.3, 0.2, 0.1), (0, 0, 0)), (0.5, -0.25, 4), 10, pinhole())
+    approach = Scenario(
+        "approach",
+        rigid(camera_angular_velocity=(0, -0.05, 0), camera_velocity=(0.3, 0.2, 0.1)),
+        (0.5, -0.25, 4),
+        10,
+        pinhole(),
+    )
     film = record(approach, camera=Camera(0.01))
     near, far = (track(film, OBSERVER, [0.125, -0.0625, start]) for start in (0, 5))
     recovered = float(abs(near.error[-1, 2]))

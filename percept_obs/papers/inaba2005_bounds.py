@@ -38,7 +38,7 @@ B, C = sp.MatrixSymbol("B", 2 * p, 3 * p), sp.MatrixSymbol("C", 3 * p, n)
 
 UNITS = np.diag([2.0, 1.0, 0.5])
 _to_units = sp.diag(2, 1, sp.S.Half).inv()
-_w, _path = sp.Matrix(TURNING), sp.Matrix(PATH)
+_w, _path = -sp.Matrix(TURNING), sp.Matrix(PATH)
 TURNS = sp.ImmutableMatrix(_to_units * cross(_w) * _to_units.inv())
 OFF = (0.3, 0.0, 0.0)
 """rho at the start, along the largest eigenvector of P."""

@@ -10,7 +10,7 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from percept_obs.points.form import PointsForm
-from percept_obs.system.motion import Motion, bound, cross
+from percept_obs.system.motion import Motion, at_rest_if_left_out, bound, cross
 from percept_obs.system.surfaces import ImagingSurface, pinhole
 from percept_obs.validation import Coefficients, checked, limit
 
@@ -101,7 +101,7 @@ functions of time, optional
     Notes
     -----
     Where instead the velocity is known of the body's point that is momentarily at the camera's centre, all points
-    share one affine motion with w = w_b - w_c; take `independent_points`.
+    share one rigid motion with the angular velocity w_c - w_b; take `independent_points`.
 
     Examples
     --------
@@ -165,12 +165,10 @@ def _body_motion(name: str, vectors: int, velocities: tuple[Any, ...], times: Ar
     """Motion of one position and of vectors that turn with a body."""
     w_c, v_c, w_b, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w_c", "v_c", "w_b", "v_p"))
     symbols = (w_c, v_c, w_b, v_p)
-    if any(value is not None for value in velocities):
-        velocities = tuple(np.zeros(3) if value is None else value for value in velocities)
     place, turning = cross(-w_c), cross(w_b - w_c)
     A = placed(vectors, {(0, 0): place, **{(k, k): turning for k in range(1, vectors)}})
     v = placed(vectors, {(0, 0): v_p - v_c}, columns=1)
-    return bound(name, A, v, list(zip(velocities, symbols, strict=True)), times)
+    return bound(name, A, v, list(zip(at_rest_if_left_out(*velocities), symbols, strict=True)), times)
 
 
 def placed(vectors: int, blocks: dict[tuple[int, int], sp.ImmutableMatrix], columns: int = 0) -> sp.ImmutableMatrix:

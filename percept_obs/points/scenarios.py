@@ -54,7 +54,7 @@ class PointsScenario(Scene):
     --------
     >>> from percept_obs import Camera, PointsScenario, rigid, record
     >>> from percept_obs.points import independent_points
-    >>> motion = rigid([0.0, 0.1, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 0.0])
+    >>> motion = rigid(camera_angular_velocity=[0.0, -0.1, 0.0], camera_velocity=[0.5, 0.0, 0.0])
     >>> scenario = PointsScenario("two points", independent_points(motion, 2), (0, 0, 4, 1, 0, 5), 3.0)
     >>> record(scenario, camera=Camera(1.0)).truth[-1].round(2).tolist()
     [-0.3, 0.0, 4.04, 0.96, 0.0, 4.7]

@@ -207,7 +207,7 @@ class Poses:
         >>> t = np.linspace(0, 2, 61)
         >>> poses = Poses(t, np.outer(np.sin(3 * t), [0.1, 0, 0]), np.stack([np.eye(3)] * 61))
         >>> v = np.outer(0.27 * np.cos(3 * t), [1, 0, 0])
-        >>> motion = poses.judge(rigid(np.zeros((61, 3)), v, np.zeros(3), times=t))
+        >>> motion = poses.judge(rigid(camera_velocity=v, times=t))
         >>> seen = Recording(t, np.zeros((61, 2)), ("y1", "y2"), pinhole(), motion, distances={"laser": 2 + 0 * t})
         >>> print(f"{seen.landmark.bias:.1%}")
         -10.0%
@@ -280,8 +280,8 @@ class CameraPath:
 
     @cached_property
     def motion(self) -> Motion:
-        """Motion of a point at rest in the camera's frame: X' = -v - w x X, so `rigid` takes -w."""
-        motion = rigid(-self.angular_velocity, self.velocity, np.zeros(3), times=self.time)
+        """Motion of a point at rest in the camera's frame: X' = -w x X - v."""
+        motion = rigid(camera_angular_velocity=self.angular_velocity, camera_velocity=self.velocity, times=self.time)
         return replace(motion, errors=self.errors)
 
     def at(self, times: ArrayLike) -> CameraPath:
@@ -318,7 +318,7 @@ def rigid_from_poses(
 ) -> Motion:
     """Return the rigid motion of points at rest, from the poses of the camera that sees them.
 
-    It is X' = [w]x X - v_c as of `rigid`, in the camera's frame; its w is minus the camera's angular velocity.
+    It is X' = -w_c x X - v_c as of `rigid`, in the camera's frame.
 
     Parameters
     ----------
@@ -337,7 +337,7 @@ def rigid_from_poses(
     Returns
     -------
     Motion
-        Known from the first pose to the last: w in rad/s, v_c in m/s.
+        Known from the first pose to the last: the camera's w_c in rad/s and v_c in m/s.
 
     Raises
     ------
@@ -357,7 +357,7 @@ def rigid_from_poses(
     >>> turns = np.stack([np.sin(0.05 * t), 0 * t, 0 * t, np.cos(0.05 * t)], axis=1)
     >>> motion = rigid_from_poses(t, np.outer(t, [0.2, 0, 0]), turns)
     >>> motion.known([0.5]).round(9)[0, [0, 3]].tolist()
-    [-0.1, 0.2]
+    [0.1, 0.2]
     """
     if frame not in ("world", "camera"):
         raise ValueError(f"the frame {frame!r} is none of 'world' and 'camera'")

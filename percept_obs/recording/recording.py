@@ -108,7 +108,7 @@ class Recording:
     Examples
     --------
     >>> from percept_obs import Recording, pinhole, rigid
-    >>> still = rigid([0, 0, 0], [0, 0, 0], [0, 0, 0])
+    >>> still = rigid(camera_velocity=[0, 0, 0])
     >>> Recording([0.0, 0.1], [[0.1], [0.2]], ("y1",), pinhole(), still, source="two pictures")
     <Recording of y1 (pinhole): 2 samples from 0 to 0.1 s, without a truth; two pictures>
     """

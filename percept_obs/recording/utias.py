@@ -75,7 +75,7 @@ def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
 def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, ...]:
     """Return 44 tracks of landmarks seen by a moving camera, as recordings with both image coordinates.
 
-    The motion is rigid: the point rests and the camera moves, with angular velocity w = -(the camera's).  The truth is
+    The motion is rigid: the point rests and the camera moves, as of `rigid`.  The truth is
     the known landmark seen from the fitted pose; `Recording.distances` has the independent ``"stereo"`` depth. A
     measured pixel agrees with the poses to about `PIXEL_SIGMA` pixels, which sets the noise variance.  They last 3.0 to
     8.6 s.

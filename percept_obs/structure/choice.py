@@ -165,7 +165,9 @@ class StructureAndMotion(OnePoint):
         if motion.parameters != rigid().parameters:
             raise ValueError(f"the {motion.name} motion is none of rigid() with numbers for all of its parameters")
         if motion.signal is None:
-            raise ValueError("the motion has no numbers; build it with those that are known, rigid(w, v_c, v_p)")
+            raise ValueError(
+                "the motion has no numbers; build it with those that are known, rigid(camera_velocity=...)"
+            )
         known = [motion.parameters.index(symbol) for symbol in self._known]
         absent = [motion.parameters.index(symbol) for symbol in self._zeros]
 

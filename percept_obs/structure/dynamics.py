@@ -22,7 +22,8 @@ class ScaledDynamics:
 
         ybar' = Omega1 v_c d_s + Omega2 + Omega3 v_p d_s
 
-    The matrices are `camera` for Omega1, `rotation` for that which multiplies w in Omega2, and `object` for Omega3.
+    The matrices are `camera` for Omega1, `rotation` for that which multiplies w_c in Omega2 (Chwa's w is
+    -w_c), and `object` for Omega3.
     """
 
     camera: sp.ImmutableMatrix
@@ -36,7 +37,7 @@ class ScaledDynamics:
         return (self.rotation * sp.ImmutableMatrix(ROTATION) + d_s * translation).expand()
 
     def _repr_latex_(self) -> str:
-        names = (r"\Omega_1", r"\Omega_2 = \Omega_\omega \omega,\quad \Omega_\omega", r"\Omega_3")
+        names = (r"\Omega_1", r"\Omega_2 = \Omega_w w_c,\quad \Omega_w", r"\Omega_3")
         matrices = map(sp.latex, (self.camera, self.rotation, self.object))
         return r"$\displaystyle " + r",\quad ".join(map(" = ".join, zip(names, matrices, strict=True))) + "$"
 
@@ -53,7 +54,7 @@ def scaled_dynamics() -> ScaledDynamics:
     --------
     >>> from percept_obs.structure import scaled_dynamics
     >>> scaled_dynamics().rate[2]
-    d_s*v_c3*ybar3**2 - d_s*v_p3*ybar3**2 - w1*y2*ybar3 + w2*y1*ybar3
+    d_s*v_c3*ybar3**2 - d_s*v_p3*ybar3**2 + w_c1*y2*ybar3 - w_c2*y1*ybar3
     """
     system = PerspectiveSystem(rigid(), pinhole())
     inverse_depth = system.coordinates[-1]

@@ -26,9 +26,9 @@ OUTPUTS = sp.symbols("xbar1:4", real=True)
 class LinearView(OnePoint):
     """Scaled positions xbar = (y1, y2, 1) / ybar3 = d_s X, which obey a linear equation.
 
-    With X' = [w]x X + v_p - v_c and a constant scale::
+    With X' = -w_c x X + v_p - v_c and a constant scale::
 
-        xbar' = [w]x xbar + d_s (v_p - v_c)
+        xbar' = -w_c x xbar + d_s (v_p - v_c)
 
     The unknowns are those of the choice, and so is the condition that they are observable.  The extended Kalman filter
     on this form is the Kalman filter; the noise of the outputs, however, depends on where the point is seen.

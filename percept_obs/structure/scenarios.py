@@ -87,7 +87,7 @@ _CHWA_SIMULATION = {
 
 
 @checked
-def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL) -> StructureScenario:
+def chwa2019_simulation(section: str, chwa_rotation: Sequence[float] = _STILL) -> StructureScenario:
     """Return the scenario of the simulations (Chwa 2019, VII.A, pp. 9-11), with velocities of this package's choice.
 
     The paper states y(0) = (0.4, 0.4, 0.2) and d_s = 4, and no velocities.  Here they vary at up to 1 rad/s where they
@@ -98,9 +98,9 @@ def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL
     ----------
     section : str
         "IV.A", "IV.B", "V.A", "V.B", "VI.A", "VI.B" or "VI.C".
-    angular_velocity : three floats
-        w in rad/s, minus the camera's own; zero in the paper.  If it is not zero, the point starts on its axis, at
-        w / w3 in the image, so that it stays in view; w3 must be positive then.
+    chwa_rotation : three floats
+        Chwa's w in rad/s, minus the camera's angular velocity; zero in the paper.  If it is not zero, the point starts
+        on its axis, at w / w3 in the image, so that it stays in view; w3 must be positive then.
 
     Raises
     ------
@@ -118,11 +118,11 @@ def chwa2019_simulation(section: str, angular_velocity: Sequence[float] = _STILL
     [[0.4, 0.4, 0.05], [0.091, 0.182, 0.045]]
     """
     number, camera, object_ = _stated(section, _CHWA_SIMULATION)
-    w = np.asarray(angular_velocity, dtype=float)
+    w = np.asarray(chwa_rotation, dtype=float)
     image = (0.4, 0.4)
     if w.any():
         if not w[2] > 0:
-            raise ValueError(f"the angular velocity {angular_velocity} needs a positive third component, or to be zero")
+            raise ValueError(f"the rotation w = {chwa_rotation} needs a positive third component, or to be zero")
         image = (w[0] / w[2], w[1] / w[2])
     name = f"Chwa 2019, simulation {section}" + (f", w = {tuple(w.tolist())}" if w.any() else "")
     source = "after Chwa 2019, VII.A; velocities chosen here"
@@ -169,7 +169,7 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
         velocity = stages[time > moves_at][column]
         return velocity(time - moves_at) if callable(velocity) else velocity
 
-    motion = rigid(_STILL, lambda time: at(time, 1), lambda time: at(time, 2))
+    motion = rigid(camera_velocity=lambda time: at(time, 1), point_velocity=lambda time: at(time, 2))
     name, choice = f"Chwa 2019, {set_up} IV", COROLLARIES[moving[0] - 1].choice()
     return replace(still, name=name, motion=motion, duration=2 * moves_at, choice=choice)
 
@@ -211,4 +211,5 @@ def _structure(
     """Scenario of a point that starts at the given (y1, y2, ybar3), in the case of a corollary."""
     depth = 1 / (scale * ybar[2])
     position, choice = (ybar[0] * depth, ybar[1] * depth, depth), COROLLARIES[number - 1].choice()
-    return StructureScenario(name, rigid(*velocities), position, 10.0, pinhole(), source, scale=scale, choice=choice)
+    motion = rigid(chwa_rotation=velocities[0], camera_velocity=velocities[1], point_velocity=velocities[2])
+    return StructureScenario(name, motion, position, 10.0, pinhole(), source, scale=scale, choice=choice)

@@ -221,7 +221,7 @@ class StructureScenario(Scenario):
     --------
     >>> from percept_obs import StructureAndMotion, pinhole, rigid
     >>> from percept_obs.structure import StructureScenario
-    >>> motion = rigid([0, 0, 0], [0.3, 0.2, 0.1], [0, 0, 0])
+    >>> motion = rigid(camera_velocity=[0.3, 0.2, 0.1])
     >>> choice = StructureAndMotion(("d_s", "v_c2", "v_c3"), zero=("v_p1", "v_p2", "v_p3"))
     >>> scene = StructureScenario("a house", motion, (1, 1, 5), 3, pinhole(), scale=4, choice=choice)
     >>> scene.coordinates([0]).tolist()

@@ -33,7 +33,7 @@ class Sensitivity:
     run : Run
         With the motion as it is believed.
     entries : tuple of str
-        Names of q entries, such as "a13", "b3" or "w2".
+        Names of q entries, such as "a13", "b3" or "w_c2".
     derivatives : array of shape (K, n, q)
         Of the estimates at the samples; NaN where there is no estimate.
     sizes : array of shape (q,)
@@ -107,7 +107,7 @@ def sensitivity(
     observer : Observer
     start : see `track`
     entries : sequence of str, optional
-        Such as "a13", "b3" or "w2"; every entry of the motion when left out.
+        Such as "a13", "b3" or "w_c2"; every entry of the motion when left out.
     believed : Motion, optional
         The recording's own when left out.
     **settings

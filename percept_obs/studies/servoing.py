@@ -31,10 +31,10 @@ SYSTEM = PerspectiveSystem(rigid(), pinhole())
 STEERING = steering(SYSTEM)
 FORM = STEERING.form
 VELOCITIES = (*SYSTEM.motion.parameters[3:6], *SYSTEM.motion.parameters[:3])
-"""Symbols of the commanded v_c and of w, the negative of the camera's angular velocity."""
+"""Symbols of the commanded velocity v_c and angular velocity w_c of the camera."""
 
 INTERACTION = SYSTEM.rate[:2, :].jacobian(VELOCITIES)
-"""Interaction matrix L of y' = L (v_c, w) for a point at rest, shape (2, 6), derived."""
+"""Interaction matrix L of y' = L (v_c, w_c) for a point at rest, shape (2, 6), derived."""
 
 KNOWN = (*SYSTEM.coordinates, *SYSTEM.motion.parameters)
 GOAL = np.array([[x, y, 1.0] for x in (-0.2, 0.2) for y in (-0.2, 0.2)])
@@ -62,7 +62,7 @@ class Servoing:
     believed : array of shape (S, K, p)
         Inverse depths that the controller believes, in 1/m.
     velocity : array of shape (S, K, 6)
-        Commanded v_c in m/s and w in rad/s, w as in `rigid`; each is held until the next sample.
+        Commanded v_c in m/s and w_c in rad/s, as in `rigid`; each is held until the next sample.
     goal : array of shape (p, 3)
         Coordinates at the goal.
     lost : array of shape (S, K) of bool
@@ -126,7 +126,9 @@ class Servoing:
         """Samples of one point, with its true motion in samples, for `track` and labs."""
         ends = np.stack([self.time[:-1], self.time[1:] - 1e-6], axis=-1).ravel()  # each velocity is held
         held = np.repeat(self.velocity[start, :-1], 2, axis=0)
-        motion = rigid(held[:, 3:], held[:, :3], 0 * held[:, :3], np.append(ends[:-1], self.time[-1]))
+        motion = rigid(
+            camera_angular_velocity=held[:, 3:], camera_velocity=held[:, :3], times=np.append(ends[:-1], self.time[-1])
+        )
         seen, truth = self.samples[start, :, point], self.coordinates[start, :, point]
         said = f"servoing, start {start}, point {point}"
         return Recording(
@@ -201,7 +203,7 @@ def servo(
     period: float = 1 / 30,
     seed: int = 0,
 ) -> Servoing:
-    """Close the loop (v_c, w) = -lambda L(y, 1/Z)^+ (y - y*) from several starts.
+    """Close the loop (v_c, w_c) = -lambda L(y, 1/Z)^+ (y - y*) from several starts.
 
     Parameters
     ----------
@@ -290,7 +292,7 @@ def servo(
         for name, value in zip(rows, (x, y, believed, u, lost), strict=True):
             rows[name].append(value)
         twist = np.zeros((len(u), 4, 4))
-        twist[:, :3, :3] = np.cross(u[:, None, 3:], np.eye(3)).swapaxes(1, 2)
+        twist[:, :3, :3] = np.cross(u[:, None, 3:], np.eye(3))  # -[w_c]x
         twist[:, :3, 3] = -u[:, :3]
         moved = expm(period * twist)
         next_points = points @ moved[:, :3, :3].swapaxes(1, 2) + moved[:, None, :3, 3]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, wraps
 from inspect import signature
 from typing import Any
 
@@ -63,12 +63,12 @@ class Motion:
     Examples
     --------
     >>> from percept_obs import rigid
-    >>> motion = rigid([0.0, 0.0, 0.1], [0.0, 0.0, 0.5], [0.0, 0.0, 0.0])
+    >>> motion = rigid(camera_angular_velocity=[0.0, 0.0, 0.1], camera_velocity=[0.0, 0.0, 0.5])
     >>> motion.A
     Matrix([
-    [  0, -w3,  w2],
-    [ w3,   0, -w1],
-    [-w2,  w1,   0]])
+    [    0,  w_c3, -w_c2],
+    [-w_c3,     0,  w_c1],
+    [ w_c2, -w_c1,     0]])
     >>> motion.values[motion.parameters[2]]
     0.1
     """
@@ -182,31 +182,35 @@ def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: 
 
 @checked
 def rigid(
-    angular_velocity: Coefficients | None = None,
+    *,
+    camera_angular_velocity: Coefficients | None = None,
     camera_velocity: Coefficients | None = None,
     point_velocity: Coefficients | None = None,
     times: ArrayLike | None = None,
+    chwa_rotation: Coefficients | None = None,
 ) -> Motion:
-    """Return the rigid motion X' = [w]x X + v_p - v_c (Chwa 2020, (1)), with the parameters w1, w2, ... v_p3.
-
-    The plus sign of [w]x makes w the negative of the camera's angular velocity in its own frame.
+    """Return the rigid motion X' = -w_c x X - v_c + v_p of a point seen by a camera, with all in the camera's axes.
 
     Parameters
     ----------
-    angular_velocity, camera_velocity, point_velocity : arrays of shape (3,) or (K, 3), functions of time, optional
-        Values of w in rad/s, v_c and v_p in m/s; symbols when left out.
+    camera_angular_velocity, camera_velocity, point_velocity : arrays of shape (3,) or (K, 3), functions of time, \
+optional
+        w_c in rad/s, as a gyroscope in the camera has it, and v_c and v_p in m/s; symbols when all are left out, else 0
+        for those that are.
     times : array of shape (K,), optional
         Times in seconds of sampled velocities.
+    chwa_rotation : array of shape (3,) or (K, 3), or function of time, optional
+        In place of w_c, the w = -w_c of papers with X' = [w]x X + v_p - v_c (Chwa 2019, (3)).
 
     Returns
     -------
     Motion
-        With A = [w]x and b = v_p - v_c.
+        With A = -[w_c]x and b = v_p - v_c, and the parameters w_c1, w_c2, ... v_p3.
 
     Raises
     ------
     ValueError
-        If shapes do not match, values are not finite or times do not increase.
+        If shapes do not match, values are not finite, times do not increase, or w_c is given twice.
 
     See Also
     --------
@@ -215,15 +219,31 @@ def rigid(
     Examples
     --------
     >>> from percept_obs import rigid
-    >>> rigid().A
-    Matrix([
-    [  0, -w3,  w2],
-    [ w3,   0, -w1],
-    [-w2,  w1,   0]])
+    >>> rigid(camera_angular_velocity=[0, 0.2, 0]).known(0)[0, :3].tolist()
+    [0.0, 0.2, 0.0]
+    >>> rigid(chwa_rotation=[0, 0.2, 0]).known(0)[0, :3].tolist()
+    [0.0, -0.2, 0.0]
     """
-    w, v_c, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w", "v_c", "v_p"))
-    coefficients = [(angular_velocity, w), (camera_velocity, v_c), (point_velocity, v_p)]
-    return bound("rigid", cross(w), v_p - v_c, coefficients, times)
+    if chwa_rotation is not None:
+        if camera_angular_velocity is not None:
+            raise ValueError("chwa_rotation is minus camera_angular_velocity; give one of the two")
+        camera_angular_velocity = _minus(chwa_rotation)
+    w_c, v_c, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w_c", "v_c", "v_p"))
+    velocities = at_rest_if_left_out(camera_angular_velocity, camera_velocity, point_velocity)
+    return bound("rigid", cross(-w_c), v_p - v_c, list(zip(velocities, (w_c, v_c, v_p), strict=True)), times)
+
+
+def at_rest_if_left_out(*velocities: Any) -> tuple[Any, ...]:
+    """Velocities with 0 for those that are None, unless all are."""
+    given = any(value is not None for value in velocities)
+    return tuple(np.zeros(3) if given and value is None else value for value in velocities)
+
+
+def _minus(value: Any) -> Any:
+    """Minus a coefficient."""
+    if callable(value):
+        return wraps(value)(lambda time: 0 - np.asarray(value(time)))
+    return 0 - np.asarray(value, dtype=float if are_numbers(value) else object)
 
 
 def cross(w: sp.ImmutableMatrix) -> sp.ImmutableMatrix:

@@ -188,7 +188,7 @@ def transition(form: PartitionedSystem) -> Callable[[Array, float, Mapping[str, 
     >>> from percept_obs import PerspectiveSystem, pinhole, rigid
     >>> from percept_obs.tracking import transition
     >>> moved = transition(PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2"))
-    >>> still = dict.fromkeys(("w1", "w2", "w3", "v_c1", "v_c2", "v_c3", "v_p1", "v_p2", "v_p3"), 0.0)
+    >>> still = dict.fromkeys(("w_c1", "w_c2", "w_c3", "v_c1", "v_c2", "v_c3", "v_p1", "v_p2", "v_p3"), 0.0)
     >>> moved([[0.1, 0.2, 0.5], [0.0, 0.0, 1.0]], 0.1, still | {"v_c3": 1.0}).round(3).tolist()
     [[0.105, 0.211, 0.526], [0.0, 0.0, 1.111]]
     """

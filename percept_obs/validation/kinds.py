@@ -32,7 +32,7 @@ EXAMPLES = MappingProxyType(
         "Family": "ibo",
         "ImagingSurface": "pinhole()",
         "LuenbergerObserver": "luenberger(form)",
-        "Motion": "affine(A, b) or rigid(w, v_c, v_p)",
+        "Motion": "affine(A, b) or rigid(camera_velocity=v_c)",
         "Observer": "ibo(form)",
         "Observability": "how_observable(recording, system)",
         "PartitionedSystem": 'PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")',

@@ -75,14 +75,14 @@ def _affine(drawn: _Draw) -> Motion:
 
 def _rigid(drawn: _Draw) -> Motion:
     parameters = rigid().parameters
-    w, camera, point = (sp.Matrix(parameters[k : k + 3]) for k in (0, 3, 6))
-    w[drawn.one_of(range(3))] = 0
+    turning, camera, point = (sp.Matrix(parameters[k : k + 3]) for k in (0, 3, 6))
+    turning[drawn.one_of(range(3))] = 0
     moving, resting = drawn.one_of([(camera, point), (point, camera)])
     resting[:, 0] = sp.zeros(3, 1)
     left_out = drawn.one_of([None, 0, 1])
     if left_out is not None:
         moving[left_out] = 0
-    return rigid(w, camera, point)
+    return rigid(camera_angular_velocity=turning, camera_velocity=camera, point_velocity=point)
 
 
 def number_of(symbol: sp.Symbol, system: PerspectiveSystem) -> float:

@@ -210,7 +210,7 @@ points_lab = PointsLab
 
 
 def _manoeuvre(settings: Settings) -> Manoeuvre:
-    return Manoeuvre(settings["turning"], settings["spin"], settings["input"], tuple(settings["velocity"]))
+    return Manoeuvre(settings["turning"], settings["spin"], settings["input"], tuple(settings["camera_velocity"]))
 
 
 def _spread(points: int) -> list[list[float]]:

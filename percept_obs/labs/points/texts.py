@@ -25,13 +25,14 @@ LETTERS = {name: sp.Symbol(letter) for name, letter in (("turning", "alpha"), ("
 
 SURFACE = pinhole()
 
-BLOCKS = MappingProxyType({name: sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True)) for name in ("w", "v", "w_b")})
-"""Vectors that may be typed: turning and velocity of resting points in the camera's frame, turning of the body."""
+_LETTERS = ("w_c", "v_c", "w_b")
+BLOCKS = MappingProxyType({name: sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True)) for name in _LETTERS})
+"""Vectors that may be typed: angular velocity and velocity of the camera, angular velocity of the body."""
 
 
 def _own_motion(points: int, turning: Any, velocity: Any, _: Any = None) -> PointsForm:
     """Points that rest in the world; a body's angular velocity does not concern them."""
-    return independent_points(rigid([-w for w in turning], velocity, [0, 0, 0]), points)
+    return independent_points(rigid(camera_angular_velocity=turning, camera_velocity=velocity), points)
 
 
 STATES: Mapping[str, Callable[..., PointsForm]] = MappingProxyType(
@@ -73,28 +74,24 @@ def texts_for_the_page() -> Parts:
     yield "", model_for_the_page()
 
 
-_VECTORS = [sp.ImmutableMatrix(sp.symbols(f"{letter}1:4", real=True)) for letter in ("w_c", "v_c", "w_b")]
-
-
 @lru_cache
 def general_form(state: str) -> PointsForm:
     """The form of a state with as many points as there may be, in symbols for the velocities."""
-    return STATES[state](MOST_POINTS, *_VECTORS)
+    return STATES[state](MOST_POINTS, *BLOCKS.values())
 
 
 def coefficients_for_the_page(state: str, moved: Vectors) -> str:
     """The coefficients of a state as a function of time and a manoeuvre's shares, for velocities of these."""
-    known = dict(zip((s for vector in _VECTORS for s in vector), (e for v in moved for e in v), strict=True))
+    known = dict(zip((s for vector in BLOCKS.values() for s in vector), (e for v in moved for e in v), strict=True))
     expressions = general_form(state).layout.expressions
     return function_source((TIME, *SHARES), tuple(expression.xreplace(known) for expression in expressions))
 
 
 def typed_velocities(typed: Typed, moved: Vectors) -> Vectors:
     """Velocities of a manoeuvre, changed as it was typed."""
-    turning, velocity, spin = moved
-    base = dict(zip(typed.symbols, [*(-e for e in turning), *(-e for e in velocity), *spin], strict=True))
-    entries = [entry.xreplace(base) for entry in typed.expressions]
-    return tuple(-e for e in entries[:3]), tuple(-e for e in entries[3:6]), tuple(entries[6:])
+    base = dict(zip(typed.symbols, (e for vector in moved for e in vector), strict=True))
+    entries = tuple(entry.xreplace(base) for entry in typed.expressions)
+    return entries[:3], entries[3:6], entries[6:]
 
 
 def _state_for_the_page(name: str) -> Texts:
@@ -179,14 +176,14 @@ def _equations() -> list[Texts]:
 def _motion_in_lines() -> list[str]:
     """Equations of the known motion of camera and body, with a letter for each share."""
     letters = {symbol.name: LETTERS.get(symbol.name, symbol) for symbol in SHARES}
-    constant = [letters[f"v{k}"] for k in (1, 2, 3)]
-    w, W, r, v = sp.symbols("w W r v")
-    times = [dotted(r), "<mo>-</mo>", markup(W), markup(r)]
+    constant = [letters[f"v_c{k}"] for k in (1, 2, 3)]
+    w_c, r, v_c = sp.symbols("w_c r v_c")
+    times = [dotted(r), "<mo>+</mo>", markup(w_c), "<mo>×</mo>", markup(r)]
     return [
-        formula(w, _share(letters["turning"], TURNING), letters),
+        formula(w_c, _share(letters["turning"], TURNING), letters),
         row("input", formula(r, _decimal(sp.Matrix(PATH)))),
         row(
-            f"{markup(v)}<mo>=</mo>",
+            f"{markup(v_c)}<mo>=</mo><mo>-</mo>",
             markup(letters["input"], letters),
             "<mo>(</mo>",
             *times,

@@ -58,7 +58,7 @@ class StructureLab(Lab):
     form : StructureAndMotion, its form, StructureScenario, or Motion, optional
         A choice or a scenario of your own, with which the lab opens, or the velocities of camera and object from
         `rigid`; without any argument it is a drive past a car.  Velocities that are sampled,
-        ``rigid(w, v_c, v_p, times)``, can be chosen beside those that the lab sets; a scenario's functions of time are
+        ``rigid(..., times=times)``, can be chosen beside those that the lab sets; a scenario's functions of time are
         sampled every 10 ms.
     observers : list, optional
         Names, and observers of your own: functions of a form, such as `percept_obs.observers.family.family` makes.
@@ -84,7 +84,7 @@ class StructureLab(Lab):
     >>> from percept_obs import rigid
     >>> times = np.linspace(0, 4, 41)
     >>> v_c = np.column_stack([np.sin(times), 0.2 + 0 * times, -0.1 * times])
-    >>> lab = structure_lab(rigid([0, 0, 0], v_c, [0, 0, 0], times), unknown=["v_p1", "v_p2"])
+    >>> lab = structure_lab(rigid(camera_velocity=v_c, times=times), unknown=["v_p1", "v_p2"])
     >>> lab.settings["velocities"], lab.settings["duration"]
     ('samples', 4.0)
     """
@@ -284,14 +284,14 @@ def motion_of(settings: Settings, samples: Motion | None = None) -> Motion:
     (still,) = known(np.zeros(1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # the controls say their units
-        return rigid(still[:3], still[3:6], still[6:])
+        return rigid(camera_angular_velocity=still[:3], camera_velocity=still[3:6], point_velocity=still[6:])
 
 
 def _velocities(settings: Settings, times: Array) -> Array:
-    """Rows of w, v_c and v_p as numbers and swings set them, shape (T, 9)."""
+    """Rows of w_c, v_c and v_p as numbers and swings set them, shape (T, 9)."""
     around, swings = (np.ravel([settings[f"{name}{part}"] for name in PHASES]) for part in ("", "_swing"))
     swung = swinging(around, swings, settings["rate"], _phases, times[:, None], np.sin)
-    return np.hstack([np.tile(settings["w"], (len(times), 1)), swung])
+    return np.hstack([np.tile(settings["w_c"], (len(times), 1)), swung])
 
 
 _phases = np.array([*PHASES.values()], dtype=float).ravel()

@@ -12,7 +12,7 @@ from percept_obs.tracking.verdict import TOLERANCE
 PICTURES = ("unknowns", "error", "image", "depth", "innovation", "determinant", "range")
 MAPPED = (
     *("noise.size", "noise.depth", "bias", "drift", "ybar.0", "ybar.1", "ybar.2", "scale"),
-    *(f"{vector}.{k}" for vector in ("v_c", "v_p", "w") for k in range(3)),
+    *(f"{vector}.{k}" for vector in ("v_c", "v_p", "w_c") for k in range(3)),
 )
 """Axes of a map besides gains."""
 
@@ -57,13 +57,13 @@ SCHEMA = Schema(
     v_p=vector(_OBJECT, "true velocity of the object", **_SPEED),
     v_c_swing=vector(_CAMERA, "how far the camera's velocity swings around it", **_SWING),
     v_p_swing=vector(_OBJECT, "how far the object's does", **_SWING),
-    w=vector(("w1", "w2", "w3"), "angular velocity", "rad/s", usual=(-0.5, 0.5), step=0.01),
+    w_c=vector(("w_c1", "w_c2", "w_c3"), "angular velocity of the camera", "rad/s", usual=(-0.5, 0.5), step=0.01),
     velocities=replace(
         VELOCITIES,
         names=("set",),
-        reason='there is "samples" too where the lab is opened with rigid(w, v_c, v_p, times)',
+        reason='there is "samples" too where the lab is opened with rigid(..., times=times)',
     ),
-    motion=typed_setting("v_c1 = 0.2 cos(t)^3; w3 = 0.1 sin(2t)"),
+    motion=typed_setting("v_c1 = 0.2 cos(t)^3; w_c3 = 0.1 sin(2t)"),
     rate=Number(1.0, 0, 10, (0, 1), 0.01, unit="rad/s", label="at a rate of", about="how fast velocities swing"),
     noise=noise(
         size=Number(0.0, 0, 1, (0, 1e-3), 5e-6, label="in y1, y2"),

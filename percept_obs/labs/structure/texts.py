@@ -30,7 +30,7 @@ from percept_obs.system.surfaces import POINT, pinhole
 MOTION = rigid()
 _ROTATION, CAMERA, OBJECT = (MOTION.parameters[k : k + 3] for k in (0, 3, 6))
 BLOCKS = MappingProxyType(
-    {letter: sp.ImmutableMatrix(block) for letter, block in (("w", _ROTATION), ("v_c", CAMERA), ("v_p", OBJECT))}
+    {letter: sp.ImmutableMatrix(block) for letter, block in (("w_c", _ROTATION), ("v_c", CAMERA), ("v_p", OBJECT))}
 )
 """Blocks of a motion by the letters that may be typed."""
 LARGEST = 3
@@ -133,7 +133,7 @@ def case_of(number: int) -> dict[str, Any]:
         "velocities": "set",
         "unknown": list(stated.unknown),
         "earlier": "d_s" in stated.earlier,
-        "w": [0.0] * 3,
+        "w_c": [0.0] * 3,
     }
     if number in (3, 5):
         swings = [[0.3, 0.3, -0.1], [0.2, 0.2, 0.1 if number == 5 else 0.0]]

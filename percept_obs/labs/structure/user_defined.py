@@ -68,33 +68,33 @@ def _of_motion(motion: Motion, duration: float | None = None) -> tuple[Settings,
     """The numbers of constant velocities; of others their samples, for as long as they last."""
     if samples := sampled(motion, duration):
         return {"velocities": "samples", "duration": min(float(times_of(samples)[-1]), LONGEST)}, samples
-    w, v_c, v_p = motion.known(0.0).reshape(3, 3).tolist()
-    return {"w": w, "v_c": v_c, "v_p": v_p, "v_c_swing": [0.0] * 3, "v_p_swing": [0.0] * 3}, None
+    w_c, v_c, v_p = motion.known(0.0).reshape(3, 3).tolist()
+    return {"w_c": w_c, "v_c": v_c, "v_p": v_p, "v_c_swing": [0.0] * 3, "v_p_swing": [0.0] * 3}, None
 
 
 def sampled(motion: Motion, duration: float | None = None) -> Motion | None:
     """The samples of velocities that vary, every 10 ms of a duration if they are functions; None of constant ones.
 
-    >>> sampled(rigid([0, 0, 0], [0.1, 0, 0], [0, 0, 0])) is None
+    >>> sampled(rigid(camera_velocity=[0.1, 0, 0])) is None
     True
-    >>> sampled(rigid([0, 0, 0], [[0.1, 0, 0], [0.3, 0, 0]], [0, 0, 0], times=[0, 2])).known(1)[0, 3].item()
+    >>> sampled(rigid(camera_velocity=[[0.1, 0, 0], [0.3, 0, 0]], times=[0, 2])).known(1)[0, 3].item()
     0.2
     """
     signal = motion.signal
     if motion.parameters != rigid().parameters or signal is None:
         raise ValueError(
             f"the velocities are a motion {motion.name!r} of {', '.join(map(str, motion.parameters)) or 'no letters'}, "
-            f"{'without' if signal is None else 'with'} numbers; bring rigid(w, v_c, v_p, times) with numbers for all"
+            f"{'without' if signal is None else 'with'} numbers; bring rigid(...) with numbers for all"
         )
     if callable(signal.samples):
         if duration is None:
             raise ValueError(
                 "the velocities are functions of time, and nothing says how long they last; bring samples, "
-                "rigid(w, v_c, v_p, times), or a StructureScenario, which has a duration"
+                "rigid(..., times=times), or a StructureScenario, which has a duration"
             )
         times = np.linspace(0, duration, int(np.ceil(duration / LONGEST_STEP)) + 1)
-        w, v_c, v_p = np.split(motion.known(times), 3, axis=1)
-        motion = rigid(w, v_c, v_p, times)
+        w_c, v_c, v_p = np.split(motion.known(times), 3, axis=1)
+        motion = rigid(camera_angular_velocity=w_c, camera_velocity=v_c, point_velocity=v_p, times=times)
     elif signal.times is None:
         return None
     refuse_unfit(motion)

@@ -128,7 +128,7 @@ CAMERA = "it is needed in the camera's (x right, y down, z forward)"
 MIX_UPS = MappingProxyType(
     {
         "nothing": MixUp("nothing", "", lambda A, b: (A, b)),
-        "w": MixUp("sign of w", "the angular velocity has the wrong sign", lambda A, b: (np.swapaxes(A, 1, 2), b)),
+        "w": MixUp("sign of w_c", "the angular velocity has the wrong sign", lambda A, b: (np.swapaxes(A, 1, 2), b)),
         "v": MixUp("sign of v", "the translation has the wrong sign", lambda A, b: (A, -b)),
         "y": MixUp("flipped axis", "the y axis of the images is flipped", _axes(np.diag([1.0, -1, 1]))),
         "x": MixUp("flipped axis", "the x axis of the images is flipped", _axes(np.diag([-1.0, 1, 1]))),

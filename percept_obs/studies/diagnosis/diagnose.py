@@ -27,8 +27,8 @@ class Finding:
     Parameters
     ----------
     key : str
-        "time offset", "focal length", "distortion ignored", "gyro bias", "scale drift", "rolling shutter", "sign of w",
-        "sign of v", "flipped axis", "frames swapped", "mismatch", "outliers" or "pixels".
+        "time offset", "focal length", "distortion ignored", "gyro bias", "scale drift", "rolling shutter",
+        "sign of w_c", "sign of v", "flipped axis", "frames swapped", "mismatch", "outliers" or "pixels".
     sentence : str
         The mistake in words.
     evidence : str
@@ -181,12 +181,12 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     >>> from percept_obs import Camera, Gaussian, Scenario, diagnose, pinhole, record, rigid
     >>> def moved(sign):
     ...     turning = lambda t: [sign * 0.3 * np.sin(2 * t), sign * 0.3 * np.cos(t), 0]
-    ...     return rigid(turning, lambda t: [np.cos(t), 0, 0], [0, 0, 0])
+    ...     return rigid(camera_angular_velocity=turning, camera_velocity=lambda t: [np.cos(t), 0, 0])
     >>> seen = record(Scenario("mine", moved(1), (0.2, 0.1, 5), 6, pinhole()), camera=Camera(0.05, Gaussian(0.002)))
     >>> diagnose(seen).named
     'nothing'
     >>> diagnose(replace(seen, motion=moved(-1))).named
-    'sign of w'
+    'sign of w_c'
     """
     given = [recordings] if isinstance(recordings, Recording) else list(recordings)
     if not given:

@@ -23,7 +23,7 @@ class Formulas extends FormulaSheet {
   }
 
   show(settings) {
-    const numbers = { ...settings, ...lettered({ v: settings.velocity }) };
+    const numbers = { ...settings, ...lettered({ v_c: settings.camera_velocity }) };
     this.setNumbers((_, letter) => numbers[letter]);
   }
 }
@@ -129,8 +129,8 @@ export class PointsLab extends Lab {
   aim() {
     const [first] = this.settings.points;
     const length = Math.hypot(...first) || 1;
-    const velocity = first.map((value) => Number(((0.2 * value) / length).toPrecision(9)));
-    this.changeAndSay("Along the ray of point 1", { turning: 0, input: 0, velocity });
+    const camera_velocity = first.map((value) => Number(((-0.2 * value) / length).toPrecision(9)));
+    this.changeAndSay("Along the ray of point 1", { turning: 0, input: 0, camera_velocity });
   }
 
   // What is shown.

@@ -51,15 +51,15 @@ export class StructureLab extends Lab {
 
   /** The numbers of the equations' letters; of samples those at the start. */
   numbersOf(settings) {
-    const { scale, v_c, v_p, w, ybar: [y1, y2, ybar3] } = settings;
-    return { d_s: scale, y1, y2, ybar3, ...lettered(isSampled(settings) ? this.startOf(settings) : { v_c, v_p, w }) };
+    const { scale, v_c, v_p, w_c, ybar: [y1, y2, ybar3] } = settings;
+    return { d_s: scale, y1, y2, ybar3, ...lettered(isSampled(settings) ? this.startOf(settings) : { v_c, v_p, w_c }) };
   }
 
   /** The velocities at the start of the run. */
   startOf(settings) {
     const { rows } = this.results.engines[0].camera.velocities(settings, this.kernels.of(settings) ?? {}, [0]);
-    const [w, v_c, v_p] = [0, 3, 6].map((first) => Array.from(rows.subarray(first, first + 3)));
-    return { w, v_c, v_p };
+    const [w_c, v_c, v_p] = [0, 3, 6].map((first) => Array.from(rows.subarray(first, first + 3)));
+    return { w_c, v_c, v_p };
   }
 
   moveStart([y1, y2]) {

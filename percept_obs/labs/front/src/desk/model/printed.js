@@ -324,10 +324,11 @@ return (py_eq(by, "t") ? key(`${py_str(name)}dot`) : `d${py_str(name)}`);
 }
 
 function other_names(name) {
-let found, quotient;
+let found, numbered, quotient;
 
-found = [py_re.sub("omega", "w", name), py_re.sub("^(lambda\\d?)hat", "\\1", name)];
-py_methods_append(found, py_re.sub("^(omega|w|vc|vp)([xyz])", ((f) => py_add(py_methods_replace(py_item(f, 1), "omega", "w"), py_str((py_methods_index("xyz", py_item(f, 2)) + 1)))), name));
+numbered = py_re.sub("^(omega|wc?|vc|vp)([xyz])", ((f) => py_add(py_item(f, 1), py_str((py_methods_index("xyz", py_item(f, 2)) + 1)))), name);
+found = [py_re.sub("^(lambda\\d?)hat", "\\1", name), numbered, py_re.sub("omega", "w", numbered)];
+py_methods_append(found, py_re.sub("omega|^w(?!c)", "wc", numbered));
 py_methods_append(found, py_re.sub("^(k\\d|xf|R|Omegag)bar$|^(xO)q$|^(I)n$", "\\1\\2\\3", name));
 if (py_t((quotient = py_re.fullmatch("d(\\w+)dt", name)))) {
 py_methods_append(found, key(`${py_str(py_item(quotient, 1))}dot`));

@@ -118,11 +118,11 @@ export class Camera {
 }
 
 /** Numbers of a state's coefficients at some times, a row each. */
-export function coefficientsAt({ states }, { state, turning, spin, input, velocity }, { coefficients }, places) {
+export function coefficientsAt({ states }, { state, turning, spin, input, camera_velocity }, { coefficients }, places) {
   const { width, samples } = states[state];
   const rows = new Float64Array(places.length * width);
   const out = new Float64Array(width);
-  const x = Float64Array.of(0, turning, spin, input, ...velocity);
+  const x = Float64Array.of(0, turning, spin, input, ...camera_velocity);
   const given = samples && sampledAt(samples, places);
   for (let k = 0; k < places.length; k++) {
     x[0] = places[k];

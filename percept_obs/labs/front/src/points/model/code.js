@@ -63,21 +63,22 @@ export function pythonOf({ settings, truth, n, points, names: states }, model) {
 
 /** Motion of camera and body, with the typed changes. */
 function movedAs(settings, { written }) {
-  const { turning, spin, input, velocity } = settings;
+  const { turning, spin, input, camera_velocity } = settings;
+  const constant = `camera_velocity=(${camera_velocity.join(", ")})`;
   const lines = [
-    `moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, velocity=(${velocity.join(", ")}))`,
+    `moves = Manoeuvre(turning=${turning}, spin=${spin}, input=${input}, ${constant})`,
     "turning, velocity, spinning = moves.velocities",
   ];
   if (!isTyped(settings)) return lines;
   const { sympy } = written[settings.motion];
   const namesOf = (which) => [1, 2, 3].map((axis) => `${which}${axis}`);
-  const moved = (which, sign = "") => list(namesOf(which).map((name) => `${sign}(${sympy[name] ?? name})`));
+  const moved = (which) => list(namesOf(which).map((name) => sympy[name] ?? name));
   return [
     ...lines,
-    `${namesOf("w").join(", ")} = [-entry for entry in turning]`,
-    `${namesOf("v").join(", ")} = [-entry for entry in velocity]`,
+    `${namesOf("w_c").join(", ")} = turning`,
+    `${namesOf("v_c").join(", ")} = velocity`,
     `${namesOf("w_b").join(", ")} = spinning`,
-    `turning, velocity, spinning = ${moved("w", "-")}, ${moved("v", "-")}, ${moved("w_b")}`,
+    `turning, velocity, spinning = ${moved("w_c")}, ${moved("v_c")}, ${moved("w_b")}`,
   ];
 }
 
@@ -86,7 +87,10 @@ function formOf({ state }, points, names, helpers) {
   if (state === "independent") {
     names.add("rigid");
     helpers.add("independent_points");
-    return [`form = independent_points(rigid([-w for w in turning], velocity, [0, 0, 0]), ${points})`];
+    return [
+      "motion = rigid(camera_angular_velocity=turning, camera_velocity=velocity)",
+      `form = independent_points(motion, ${points})`,
+    ];
   }
   const helper = { body: "rigid_body", origin: "body_with_origin" }[state];
   helpers.add(helper);

@@ -23,6 +23,6 @@ export const SYMBOLS = [
     `${letter("α")}, ${letter("β")}, ${letter("γ")}`,
     "how much the camera turns, the body turns, and of the input there is",
   ],
-  ["input", "the known part of the velocity; without it no image tells the scale"],
+  ["input", "the known part of the camera's velocity; without it no image tells the scale"],
   ["hold", "what the observer takes for the images between two samples"],
 ];

@@ -62,7 +62,7 @@ export function reasons(shown, model) {
     found.push('Between samples the observer takes the exact signal, which has no noise. Choose "the last sample" ' +
       'for Hold to see what noise does.');
   }
-  if (settings.input === 0 && settings.velocity.every((v) => v === 0)) {
+  if (settings.input === 0 && settings.camera_velocity.every((v) => v === 0)) {
     found.push("There is no input, v = 0. Then twice all places move to twice all places, and the images stay the " +
       "same: they never tell the scale.");
   }

@@ -12,7 +12,7 @@ export function sentenceOf(scene, seen, moved) {
   const { settling, divergedAt, settings, time } = shown;
   const off = `${seen.off.toFixed(1)} m`;
   if (seen.prelude) return "One picture shows directions only: near and small, or far and large, looks the same.";
-  const still = settings.input === 0 && settings.velocity.every((value) => value === 0);
+  const still = settings.input === 0 && settings.camera_velocity.every((value) => value === 0);
   if (why) {
     if (still) return "Three bodies, one picture: without a travel of the camera they go on looking alike.";
     return "Three bodies, one picture. The camera's travel shifts the near one most: that tells them apart.";
@@ -75,8 +75,8 @@ export function controlsOf(lab) {
     }),
     range({
       ...{ name: "first travel", label: "Camera travels", low: 0, high: 5, step: 0.1, rest, text: inWords },
-      get: () => (flies() ? Math.abs(lab.settings.velocity[0]) : null),
-      set: (speed) => change({ velocity: [-speed, 0, 0] }),
+      get: () => (flies() ? Math.abs(lab.settings.camera_velocity[0]) : null),
+      set: (speed) => change({ camera_velocity: [speed, 0, 0] }),
     }),
   ];
 }

@@ -27,7 +27,7 @@ export const WORDS = {
       ...{ constant: "constant", scheduled: "scheduled", typed: "typed", lyapunov: "Lyapunov", riccati: "Riccati" },
     },
   },
-  velocity: { name: "velocity {}", label: "added to v, {}" },
+  camera_velocity: { name: "velocity {}", label: "camera moves, {}" },
   start: { choices: { rays: "on the first rays", error: "with a given error", zero: "at zero" } },
   noise: NOISE,
   hold: HOLD,
@@ -38,7 +38,7 @@ export const WORDS = {
 export const NAMES = {
   state: "what the state holds", points: "the points", hidden: "when points are hidden",
   turning: "how the camera turns", spin: "how the body turns", input: "the input",
-  velocity: "the velocity that is added", motion: "the motion that is typed",
+  camera_velocity: "how the camera moves", motion: "the motion that is typed",
   weight: "the kind of P", size: "P", P: "the P that is typed", P0: "the P at the beginning that is typed",
   final: "P at the end", decrease: "the decrease q", forgetting: "the forgetting λ", start: "where the estimate starts",
   depth: "the depth at which it starts", error: "the error at which it starts", noise: "noise", dropout: "lost samples",
@@ -119,9 +119,9 @@ export class Panel extends Fieldsets {
   motion() {
     const { letters } = this.model;
     const aim = button("Along the ray of point 1", () => this.lab.aim(), { "data-control": "aim" });
-    const stop = () => this.lab.changeAndSay("v = 0", { input: 0, velocity: [0, 0, 0] });
+    const stop = () => this.lab.changeAndSay("v = 0", { input: 0, camera_velocity: [0, 0, 0] });
     const still = button("v = 0", stop, { "data-control": "no input" });
-    const added = this.litList("velocity", "v", (letter) => ({ letter: letters[letter] }), "");
-    return [...added, this.typed("motion", "w3 = 0.5 cos(t)"), element("div", { class: "buttons" }, still, aim)];
+    const added = this.litList("camera_velocity", "v_c", (letter) => ({ letter: letters[letter] }), "");
+    return [...added, this.typed("motion", "w_c3 = 0.5 cos(t)"), element("div", { class: "buttons" }, still, aim)];
   }
 }

@@ -49,8 +49,8 @@ export function sceneOf(lab) {
     },
     /** Without input the scale is not seen: all of the state may be larger, and moves as before. */
     unseenOf(shown, at, theme) {
-      const { input, velocity } = shown.settings;
-      const moved = input !== 0 || velocity.some((value) => value !== 0);
+      const { input, camera_velocity } = shown.settings;
+      const moved = input !== 0 || camera_velocity.some((value) => value !== 0);
       if (shown.settings.state === OWN || isTyped(shown.settings) || moved) return null;
       const placeOf = motionAt(lab, shown, at);
       const pointOf = (k) => {

@@ -14,6 +14,6 @@ export function axesOf(_settings, model) {
     at("drift", "drift of ȳ3"),
     ...each("ybar", ["start y1", "start y2", "start ȳ3"]),
     at("scale", "true d_s"),
-    ...["v_c", "v_p", "w"].flatMap(moved),
+    ...["v_c", "v_p", "w_c"].flatMap(moved),
   ];
 }

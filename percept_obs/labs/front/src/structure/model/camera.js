@@ -28,10 +28,10 @@ export class StructureCamera extends PointCamera {
     return isSampled(settings) ? this.model.samples.times : breaksOf(this.model, settings.motion);
   }
 
-  /** Known and unknown velocities at some times, in rows of w, v_c, v_p; one row if they do not change. */
+  /** Known and unknown velocities at some times, in rows of w_c, v_c, v_p; one row if they do not change. */
   velocities(settings, { swinging, typed }, times) {
     if (isSampled(settings)) return sampledAt(this.model.samples, times);
-    const { w, v_c, v_p, v_c_swing, v_p_swing, rate } = settings;
+    const { w_c, v_c, v_p, v_c_swing, v_p_swing, rate } = settings;
     const { phases } = this.model;
     const [constant, swing, phase] = [[...v_c, ...v_p], [...v_c_swing, ...v_p_swing], [...phases.v_c, ...phases.v_p]];
     const varying = varies(settings);
@@ -42,7 +42,7 @@ export class StructureCamera extends PointCamera {
     const given = new Float64Array(10);
     const moved = new Float64Array(9);
     for (let k = 0; k < count; k++) {
-      rows.set(w, 9 * k);
+      rows.set(w_c, 9 * k);
       for (let i = 0; i < 6; i++) {
         x[0] = constant[i];
         x[1] = swing[i];

@@ -61,7 +61,7 @@ function motionIn(settings, model) {
   // A swing whose rate is 0 stays where it begins.
   const start = (which, value, k) => value + settings[`${which}_swing`][k] * Math.sin(model.phases[which][k]);
   const [v_c, v_p] = ["v_c", "v_p"].map((which) => list(settings[which].map((value, k) => start(which, value, k))));
-  return [`motion = rigid(${list(settings.w)}, ${v_c}, ${v_p})`];
+  return rigidOf(list(settings.w_c), v_c, v_p);
 }
 
 /** Velocities as numbers and swings set them, and what was typed of these. */
@@ -71,17 +71,27 @@ function motionThatIsTyped(settings, { phases, written }) {
   const moved = (which) => list(namesOf(which).map((name) => python[name] ?? name));
   return [
     "def velocities(t):",
-    `    ${namesOf("w").join(", ")} = ${settings.w.join(", ")}`,
+    `    ${namesOf("w_c").join(", ")} = ${settings.w_c.join(", ")}`,
     ...["v_c", "v_p"].map((which) => `    ${namesOf(which).join(", ")} = ${swung(settings, phases, which).join(", ")}`),
-    `    return ${["w", "v_c", "v_p"].map(moved).join(", ")}`,
+    `    return ${["w_c", "v_c", "v_p"].map(moved).join(", ")}`,
     "",
-    "motion = rigid(*(lambda t, k=k: velocities(t)[k] for k in range(3)))",
+    ...rigidOf(...[0, 1, 2].map((k) => `lambda t: velocities(t)[${k}]`)),
   ];
 }
 
 function motionThatSwings(settings, phases) {
   const velocities = ["v_c", "v_p"].map((which) => `${which} = lambda t: ${list(swung(settings, phases, which))}`);
-  return [...velocities, `motion = rigid(lambda t: ${list(settings.w)}, v_c, v_p)`];
+  return [...velocities, ...rigidOf(list(settings.w_c), "v_c", "v_p")];
+}
+
+function rigidOf(w_c, v_c, v_p) {
+  return [
+    "motion = rigid(",
+    `    camera_angular_velocity=${w_c},`,
+    `    camera_velocity=${v_c},`,
+    `    point_velocity=${v_p},`,
+    ")",
+  ];
 }
 
 /** The components of a velocity, with the swings of those that swing. */

@@ -127,7 +127,7 @@ export class StructureEngine extends Runner {
     return this.memory.once("grid", settings, make, settings.period, time.length);
   }
 
-  /** Known signals of the observers: rows of w, M, m. */
+  /** Known signals of the observers: rows of w_c, M, m. */
   known({ settings, hidden }, { grid }, functions) {
     const count = hidden.length;
     const make = (read) => {

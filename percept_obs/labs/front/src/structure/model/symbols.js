@@ -13,7 +13,7 @@ export const SYMBOLS = [
   ],
   [indexed("d", "s"), "the scale, in 1/m: d_s ȳ3 is the inverse depth in 1/m"],
   [`${indexed("v", "c")}, ${indexed("v", "p")}`, "velocity of the camera and of the point (the object), in m/s"],
-  ["<math><mi>w</mi></math>", "angular velocity of the camera, in rad/s; it is always known"],
+  [indexed("w", "c"), "angular velocity of the camera about its own axes, in rad/s; it is always known"],
   ["<math><mi>θ</mi></math>", "the unknowns in the form in which the equations hold them"],
   [
     "<math><msub><mi>Ω</mi><mi>g</mi></msub></math>",

@@ -48,7 +48,7 @@ export function unknownOf({ rests, size, ahead, sideways }, quantities) {
 
 /** The worlds that make the film of a result. */
 export class Worlds {
-  /** @param {(times: ArrayLike<number>) => {rows: Float64Array, varying: boolean}} velocities  rows of w, v_c, v_p */
+  /** @param {(times: ArrayLike<number>) => {rows: Float64Array, varying: boolean}} velocities  rows of w_c, v_c, v_p */
   constructor(shown, velocities) {
     const { time, settings } = shown;
     this.shown = shown;

@@ -18,7 +18,7 @@ export const WORDS = {
   v_c_swing: { name: "swing {}", label: "swing of {}" },
   v_p_swing: { name: "swing {}", label: "swing of {}" },
   ybar: { name: "start {}", label: "start {}" },
-  w: { label: "turning {}" },
+  w_c: { label: "turning {}" },
   velocities: { choices: { set: "set here", samples: "your samples" } },
   noise: NOISE,
   start: { choices: { own: "the first sample", zero: "zero" } },
@@ -37,7 +37,7 @@ export const NAMES = {
   earlier: "where d_s comes from", observers: "the observers", gains: "gains", ybar: "where the point starts",
   scale: "the true d_s", v_c: "the camera's velocity", v_p: "the object's velocity",
   v_c_swing: "how the camera's velocity swings",
-  v_p_swing: "how the object's velocity swings", w: "how the camera turns", noise: "noise", bias: "the bias of ȳ3",
+  v_p_swing: "how the object's velocity swings", w_c: "how the camera turns", noise: "noise", bias: "the bias of ȳ3",
   drift: "the drift of ȳ3",
   hold: "what is held between samples", step: "the longest step", start: "where the estimate starts",
   pictures: "the charts", over: "the map over two settings",
@@ -100,7 +100,7 @@ export class StructurePanel extends Fieldsets {
       this.add(varying),
       this.onlyIf(swings, this.number("rate"), ...this.each("v_c_swing"), ...this.each("v_p_swing")),
       this.typed("motion", "v_c1 = 0.2 cos(t)"),
-      ...this.litList("w"),
+      ...this.litList("w_c"),
     ];
     return [
       this.number("scale"),

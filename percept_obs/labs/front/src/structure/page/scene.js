@@ -17,8 +17,8 @@ export const sceneOf = (lab) => ({
     const when = valueBetween(time, 1, 0, at);
     const { rows } = lab.results.engines[0].camera.velocities(settings, lab.kernels.of(settings), [when]);
     const [w1, w2, w3, ...v] = rows;
-    // The point as the camera sees it move: [w]x X + v_p - v_c, as rigid() has it.
-    const A = [[0, -w3, w2], [w3, 0, -w1], [-w2, w1, 0]];
+    // The point as the camera sees it move: -w_c x X + v_p - v_c, as rigid() has it.
+    const A = [[0, w3, -w2], [-w3, 0, w1], [w2, -w1, 0]];
     const motion = [0, 1, 2].map((i) => v[3 + i] - v[i]);
     const there = [y1, y2, 1].map((value) => value / (scale * ybar3));
     const velocities = imageVelocities(there, (copy) => affine(A, motion, copy), ([x, y, z]) => [x / z, y / z]);
