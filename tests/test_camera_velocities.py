@@ -12,7 +12,6 @@ from scipy.spatial.transform import Rotation
 import percept_obs as po
 from percept_obs.labs import points_lab, structure_lab
 from percept_obs.points import independent_points, rigid_body
-from percept_obs.recording.derivatives import Neighbours
 from percept_obs.structure import QUANTITIES, StructureAndMotion, scaled_dynamics
 from percept_obs.validation import WrongKind
 
@@ -43,8 +42,8 @@ MOTIONS = dict(
         (
             *both(rigid),
             *both(chwa),
-            poses(TIME).motion(Neighbours()),
-            po.rigid_from_poses(TIME, POSITION, ROTATION.as_matrix(), derivative=Neighbours()),
+            poses(TIME).motion(),
+            po.rigid_from_poses(TIME, POSITION, ROTATION.as_matrix()),
         ),
         strict=True,
     )
