@@ -127,6 +127,24 @@ class Motion:
     seed: int = 0
     heading: float = 0.0
     tremor: float = 1.0
+    quick: float = 0.0
+    """Share of a hand that shakes: to and fro once in 1/3 to 3 s by 1 to 8 cm, and by some degrees."""
+
+    @cached_property
+    def shake(self):
+        """Angular frequency in rad/s, amplitudes of the shift in metres and of the turn in radians, and phases."""
+        rng = np.random.default_rng([self.seed, 8])
+        frequency, reach = rng.uniform(0.3, 3), rng.uniform(0.01, 0.08)
+        reach = min(reach, 0.08 / max(1.0, frequency))  # no arm is both that quick and that wide
+        along, about = (each / np.linalg.norm(each) for each in rng.normal(size=(2, 3)) * [[1, 1, 0.5], [1, 1, 0.2]])
+        turn = np.deg2rad(rng.uniform(0.5, 2.0)) / max(1.0, frequency)
+        return 2 * np.pi * frequency, reach * along, turn * about, rng.uniform(0, 2 * np.pi, 2)
+
+    def shaken(self, time):
+        """Shift in metres and turn in radians of the shaking hand, each of shape (n, 3)."""
+        rate, shift, turn, phase = self.shake
+        waves = np.sin(np.multiply.outer(rate * time, [1, 1]) + phase) * self.quick
+        return np.multiply.outer(waves[:, 0], shift), np.multiply.outer(waves[:, 1], turn)
 
     def tremors(self, time):
         """Shift in metres and turn in radians of the trembling hand, each of shape (n, 3)."""
@@ -158,8 +176,10 @@ class Motion:
     def pose(self, time):
         """Positions, shape (n, 3), and rotations: X_world = R X_camera + p, in the frame of the upright camera."""
         time = np.ravel(time).astype(float)
-        (position, rotation), (shift, turn) = self.smooth(time), self.tremors(time)
-        return position + shift, rotation * Rotation.from_rotvec(turn)
+        position, rotation = self.smooth(time)
+        for shift, turn in (self.shaken(time), self.tremors(time)):
+            position, rotation = position + shift, rotation * Rotation.from_rotvec(turn)
+        return position, rotation
 
     def velocity(self, time, step=1e-4):
         """Velocity in m/s and angular velocity in rad/s along the camera's axes, shapes (n, 3)."""
@@ -405,9 +425,10 @@ def standard_film(
     boards=1,
     upside_down=False,
     tremor=1.0,
+    quick=1.0,
     **faults,
 ):
-    """Write the file SEED.mp4 of a film whose camera, path and scene vary with the seed; return its path and truth."""
+    """Write the file SEED.mp4 of a film; camera, hand, path and scene vary with the seed.  Return path and truth."""
     rng = np.random.default_rng([seed, 7])
     heading = rng.uniform(-0.4, 0.4) + np.pi * upside_down
     focal, long = rng.uniform(900, 1200) / 1280 * max(size), rng.uniform(12, 18)
@@ -415,7 +436,7 @@ def standard_film(
     lens = (rng.uniform(-0.05, 0.1), rng.uniform(-0.03, 0.03), *rng.uniform(-0.0005, 0.0005, 2))
     camera = PixelCamera((focal, focal), centre, size, lens)  # a telephone's pixels are square
     path = Path(folder) / f"{seed}.mp4"
-    sheets, motion = scene(seed, heading, boards, focal / 0.45), Motion(kind, seed, heading, tremor)
+    sheets, motion = scene(seed, heading, boards, focal / 0.45), Motion(kind, seed, heading, tremor, quick)
     return path, write_film(path, sheets, motion, camera, duration or long, rate, Faults(**faults), seed)
 
 

@@ -1,4 +1,4 @@
-"""Films of 10 to 20 s, rendered and read: errors of poses and distances, and faults by name.
+"""Films of quick hands, 10 to 20 s, rendered and read: errors of poses and distances, and faults by name.
 
 `python tests/film_study.py [SEEDS [FAULT...]]` prints a line a film, and a table at the end.
 The faults are the keys of FAULTS.
@@ -38,17 +38,25 @@ def error(run, truth, film, late):
 
 def judged(film, truth):
     """Figures of a film."""
-    off = np.linalg.norm(film.path.position - truth.poses.position[truth.frame(film.path.time)], axis=1)
+    poses = film.seen.poses
+    off = np.linalg.norm(film.path.at(poses.time).position - truth.poses.position[truth.frame(poses.time)], axis=1)
     found = {"pose": 1e3 * np.median(off), "focal": film.camera.focal[0] / truth.camera.focal[0] - 1}
-    errors, wrong = {True: [], False: []}, 0
+    errors, wrong, count = {True: [], False: []}, 0, 0
     for run in film.runs:
         late = int(np.searchsorted(run.elapsed, AFTER))
         if late < len(run.time):
             errors[run.recording.truth is not None].append(error(run, truth, film, late))
-        wrong += run.trust().trusted and error(run, truth, film, -1) > 0.2
+        trusted = run.trust().trusted
+        count += trusted
+        wrong += trusted and error(run, truth, film, -1) > 0.1
     for name, board in (("corners", True), ("others", False)):
         found |= {name: np.nanmedian(errors[board]), f"{name} 90 %": np.nanquantile(errors[board], 0.9)}
-    return found | {"trusted and wrong": wrong, "findings": ", ".join(each.key for each in film.findings)}
+    return found | {
+        "tracks": len(film),
+        "trusted": count,
+        "trusted and wrong": wrong,
+        "findings": ", ".join(each.key for each in film.findings),
+    }
 
 
 def study(seeds, faults):

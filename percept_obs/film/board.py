@@ -17,6 +17,16 @@ from percept_obs.validation import checked, needed, write_whole
 DICTIONARY = "DICT_4X4_50"
 """OpenCV's markers of 4 x 4 cells, the largest cells that there are."""
 
+FAMILIES = (
+    *(f"DICT_{n}X{n}_1000" for n in (4, 5, 6, 7)),
+    "DICT_ARUCO_ORIGINAL",
+    *(f"DICT_APRILTAG_{name}" for name in ("16h5", "25h9", "36h10", "36h11")),
+)
+"""Dictionaries of OpenCV that hold all others."""
+
+SEVERAL = 4
+"""Markers in a picture that are no accident."""
+
 WINDOW = 0.7
 """Half of the window in which a corner is looked for, over the white between a square's edge and its marker."""
 
@@ -154,3 +164,20 @@ class Board:
         until = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 50, 1e-3)
         finer = cv2.cornerSubPix(picture, corners, (half, half), (-1, -1), until)
         return np.ravel(numbers).astype(int), np.reshape(finer, (-1, 2)).astype(np.float64), twice
+
+
+def other_markers(picture: Any) -> list[str]:
+    """Return what else a grey picture may show than our markers, in words: another dictionary, or white on black."""
+    from cv2 import aruco
+
+    found = []
+    for shown, colours in ((picture, ""), (255 - picture, "white on black, of ")):
+        for family in FAMILIES:
+            detector = aruco.ArucoDetector(aruco.getPredefinedDictionary(getattr(aruco, family)))
+            numbers = detector.detectMarkers(shown)[1]
+            known = 0 if numbers is None else len(np.unique(numbers))
+            ours = family == FAMILIES[0] and known and np.max(numbers) < 50
+            if known >= SEVERAL and (colours or not ours):
+                which = f"the dictionary {DICTIONARY}" if ours else f"another dictionary, {family}"
+                found.append((known, f"markers {colours}{which}"))
+    return [max(found)[1]] if found else []

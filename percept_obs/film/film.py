@@ -99,7 +99,7 @@ class Film(Footage):
         width, height = self.video.size
         first = (
             f"{self.source}: {len(time)} pictures of {width} x {height} in {time[-1] - time[0]:.1f} s; poses in "
-            f"{100 * len(self.path.time) / len(time):.0f} % of them"
+            f"{100 * np.isin(time, self.path.time).mean():.0f} % of them"
         )
         if self.seen is not None:
             first += f", with corners to {self.seen.error:.2g} pixels"
@@ -107,6 +107,9 @@ class Film(Footage):
             first += f" and the focal length to {100 * self.focal_deviation:.2g} %"
         said = [f"{first}; {corners} tracks of the board's corners, {len(self) - corners} of other points."]
         said += [f"{each.sentence[0].upper()}{each.sentence[1:]}: {each.evidence}." for each in self.findings]
+        beyond = np.isnan(self.camera.directions(self.sighting.tracked)).any(axis=1).sum()
+        if beyond:
+            said.append(f"{beyond} of {len(self.sighting.tracked)} corners lie beyond the lens and are left out.")
         if len(time) < CUT_OFF * self.video.count:
             said.append(f"The file speaks of {self.video.count} pictures: it is damaged or cut off.")
         return " ".join(said)

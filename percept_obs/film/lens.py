@@ -20,8 +20,11 @@ ALIKE = 1.5
 UNSURE = 0.01
 """Standard deviation of the principal point, over the size of the picture, from which on it is taken as the middle."""
 
+UNSURE_BEND = 0.02
+"""Standard deviation of what k2 changes in the corner of the picture, relative, from which on there is no k2."""
+
 FOLDED = 0.1
-"""Least slope of a lens in the corner of the picture; below it no direction may be seen there."""
+"""Least slope of a lens up to the corner of the picture; below it no direction may be seen there."""
 
 FAR, TRIMS = 5.0, 3
 """Medians of the corners' errors beyond which one is left out, and how often the lens is found."""
@@ -59,20 +62,33 @@ def find_lens(corners: Array, places: Array, size: tuple[int, int]) -> Lens:
     views = _different(corners)
     pixels = corners[views]
     start = np.array([[max(size), 0, (size[0] - 1) / 2], [0, max(size), (size[1] - 1) / 2], [0, 0, 1.0]])
-    plain = cv2.CALIB_FIX_K2 | cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST  # more is not told by a small board
-    middle = cv2.CALIB_FIX_PRINCIPAL_POINT
-    fixed = [0, middle, middle | cv2.CALIB_FIX_K1]
+    plain = cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST  # more is not told by a small board
+    middle, flat = cv2.CALIB_FIX_PRINCIPAL_POINT, cv2.CALIB_FIX_K2
+    fixed = [0, flat, middle, middle | flat, middle | flat | cv2.CALIB_FIX_K1]
     for _ in range(TRIMS):
         for more in fixed:
             flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO | plain | more
             matrix, lens, spread, off = _calibrated(pixels, places, size, start, flags)
             corner = float(np.hypot(*size)) / 2 / matrix[1, 1]
-            if spread[2:4].max() < UNSURE * max(size) and 1 + 3 * lens[0] * corner**2 > FOLDED:
+            told = spread[2:4].max() < UNSURE * max(size) and spread[5] * corner**4 < UNSURE_BEND
+            if told and reaches(lens[:2], corner):
                 break
         pixels = np.where((off < FAR * np.nanmedian(off))[..., None], pixels, np.nan)
     camera = PixelCamera((matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2]), size, lens[:4].tolist())
     alike = np.sqrt(2 * np.isfinite(off).sum(axis=1).mean())  # the errors in one view are no independent ones
     return Lens(camera, float(alike * spread[1] / matrix[1, 1]))
+
+
+def reaches(lens: Array, corner: float) -> bool:
+    """Return True if a lens k1, k2 maps directions up to a distorted radius, both over the focal length.
+
+    A direction at the radius r is seen at r (1 + k1 r^2 + k2 r^4), and this must still grow there.
+    """
+    k1, k2 = lens
+    radius = np.linspace(0, 4 * corner, 1000)
+    seen, slope = radius * (1 + k1 * radius**2 + k2 * radius**4), 1 + 3 * k1 * radius**2 + 5 * k2 * radius**4
+    beyond = np.flatnonzero(seen >= corner)
+    return bool(len(beyond) and slope[: beyond[0] + 1].min() > FOLDED)
 
 
 def _calibrated(

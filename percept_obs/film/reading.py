@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.film.board import Board
+from percept_obs.film.board import Board, other_markers
 from percept_obs.film.faults import FEWEST, Faults, find_faults
 from percept_obs.film.film import BOARD, TRIANGULATION, Film
 from percept_obs.film.lens import FEWEST_CORNERS, Seen, find_lens, find_poses
 from percept_obs.film.pictures import undistorted
-from percept_obs.film.sighting import SHORTEST_TRACK, Sighting, sight
+from percept_obs.film.sighting import SHORTEST_TRACK, WIDEST, Sighting, sight
 from percept_obs.film.triangulation import triangulate
 from percept_obs.film.video import Video, open_film
 from percept_obs.recording import Recording
@@ -24,6 +24,9 @@ from percept_obs.recording.text_table import PathLike
 from percept_obs.recording.track_table import runs
 from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked
+
+LOOKED_AT = 8
+"""Pictures in which other boards are looked for, where this one is not seen."""
 
 SHORTEST_FILM = 1.5
 """Seconds that a film lasts at least."""
@@ -185,11 +188,23 @@ def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
             f"'{video.path}' is too short: {len(count)} pictures in {np.ptp(sighting.time):.1f} s; film for 10 to 20 s"
         )
     if enough < FEWEST:
+        instead = _seen_instead(video, len(count)) or "Is it this board (board=...)?"
         raise ValueError(
             f"{enough} of {len(count)} pictures of '{video.path}' show {FEWEST_CORNERS} corners of the board, "
-            f"{board.name}, and {FEWEST} are needed. Is it this board (board=...)? It must lie flat, be sharp, and "
-            "fill a third of the picture's width. Without a board, give poses=... and camera=..., as of read_colmap"
+            f"{board.name}, and {FEWEST} are needed. {instead} It must "
+            "lie flat, be sharp, and fill a third of the picture's width. Without a board, give poses=... and "
+            "camera=..., as of read_colmap"
         )
+
+
+def _seen_instead(video: Video, pictures: int) -> str:
+    """Return which other markers some of so many pictures show, in a sentence, or nothing."""
+    every, scale = max(1, pictures // LOOKED_AT), min(1.0, WIDEST / max(video.size))
+    shots = (shot for k, (_, shot) in enumerate(video.shots("looking for other boards")) if k % every == 0)
+    seen = [name for shot in shots for name in other_markers(shot(scale, "gray"))]
+    if not seen:
+        return ""
+    return f"It shows a board with {max(set(seen), key=seen.count)}: print the one of percept-obs board."
 
 
 def _path(poses: Poses) -> CameraPath:
@@ -238,7 +253,12 @@ def _recordings(
     for part in parts:
         if time[part[-1]] - time[part[0]] < SHORTEST_TRACK:
             continue
-        at, image = row[part], camera.image(pixels[part])
+        image = camera.directions(pixels[part])
+        inside = np.isfinite(image).all(axis=1)  # the lens may end before the picture does
+        part, image = part[inside], image[inside]
+        if len(part) < FEWEST_POSES:
+            continue
+        at = row[part]
         place = triangulate(path.position[at], turns[at].as_matrix(), image)
         first = int(place.agree.argmax())  # observers start from the first sample
         if known is None and not (place.deviation < SURE and place.spread * camera.focal[0] < LARGEST_SPREAD):

@@ -138,6 +138,19 @@ class PixelCamera:
         It raises ValueError where the lens maps no direction to a pixel, so that the coefficients do not fit the
         images.
         """
+        image = self.directions(pixels)
+        lost = np.isnan(image).any(axis=-1) & np.isfinite(pixels).all(axis=-1)
+        if lost.any():
+            pixel = np.atleast_2d(np.asarray(pixels, dtype=float)[lost])[0]
+            raise ValueError(
+                f"no direction is seen at the pixel ({pixel[0]:.6g}, {pixel[1]:.6g}) through a lens with the "
+                f"distortion {self.distortion}; are these the coefficients of this camera, in the order "
+                f"{', '.join(map(str, LENS))}?"
+            )
+        return image
+
+    def directions(self, pixels: ArrayLike) -> Array:
+        """Return what `image` does, with NaN where the lens maps no direction to a pixel."""
         distorted = (numbers(pixels, "the pixels", 2) - self.centre) / self.focal
         return self._undistorted(distorted) if any(self.distortion) else distorted
 
@@ -162,7 +175,7 @@ class PixelCamera:
         return lambda y1, y2: distortion()(y1, y2, *lens)
 
     def _undistorted(self, distorted: Array) -> Array:
-        """Undistort image coordinates by Newton's method."""
+        """Undistort image coordinates by Newton's method; NaN where there is no direction."""
         found, lens = distorted.copy(), self._lens()
         with np.errstate(all="ignore"):
             for _ in range(MOST_TRIALS):
@@ -176,15 +189,7 @@ class PixelCamera:
             a, b, c, d = lens(*np.moveaxis(found, -1, 0))[2:]
             lost = ~(np.abs(back - distorted) < 1e-9 * (1 + np.abs(distorted))).all(axis=-1)
             lost |= ~((a * d > b * c) & (a + d > 0))  # where the lens has folded or mirrored the image
-        lost &= np.isfinite(distorted).all(axis=-1)
-        if lost.any():
-            pixel = np.atleast_2d((distorted * self.focal + self.centre)[lost])[0]
-            raise ValueError(
-                f"no direction is seen at the pixel ({pixel[0]:.6g}, {pixel[1]:.6g}) through a lens with the "
-                f"distortion {self.distortion}; are these the coefficients of this camera, in the order "
-                f"{', '.join(map(str, LENS))}?"
-            )
-        return found
+        return np.where(lost[..., None], np.nan, found)
 
 
 @lru_cache(maxsize=1)

@@ -80,8 +80,8 @@ class Diagnosis:
         Each wrong number by itself, beside the mistakes found.
     not_told : tuple of str
         Keys of mistakes that this motion cannot tell.
-    looked_at, given : int
-        Number of recordings.
+    looked_at, given, too_short : int
+        Numbers of recordings.
 
     See Also
     --------
@@ -105,6 +105,7 @@ class Diagnosis:
     not_told: tuple[str, ...] = ()
     looked_at: int = 1
     given: int = 1
+    too_short: int = 0
 
     @property
     def named(self) -> str:
@@ -134,8 +135,10 @@ class Diagnosis:
             said.append(f"Nothing looks wrong: {left}.")
         if self.not_told:
             said.append(f"This motion cannot tell: {', '.join(self.not_told)}.")
-        if self.looked_at < self.given:
+        if self.looked_at + self.too_short < self.given:
             said.append(f"{self.looked_at} of {self.given} recordings were looked at, evenly spread.")
+        if self.too_short:
+            said.append(f"{self.too_short} were left out, for they are too short.")
         return " ".join(said)
 
     def __repr__(self) -> str:
@@ -163,7 +166,7 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     Raises
     ------
     ValueError
-        If there is none, one shows several points, or one is too short.
+        If there is none, one shows several points, or all are too short.
 
     See Also
     --------
@@ -202,14 +205,15 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
         )
         pixels = Finding("pixels", "the samples are pixels and not divided by the focal length", evidence)
         return Diagnosis((pixels,), math.nan, math.nan, True, noise, looked_at=len(several), given=len(given))
-    tracks = tuple(map(track_of, several))
-    for recording, track in zip(several, tracks, strict=True):
-        if track.count < FEWEST:
-            raise ValueError(
-                f"{recording!r} has {track.count} values where its motion is known up to the largest offset that is "
-                f"tried, {LARGEST_OFFSET} s; {FEWEST} are needed: leave it out, or give longer poses"
-            )
-    found = search(tracks, noise)
+    tracks = {recording: track_of(recording) for recording in several}
+    short = [recording for recording, track in tracks.items() if track.count < FEWEST]
+    several = [recording for recording in several if recording not in short]
+    if not several:
+        raise ValueError(
+            f"{short[0]!r} has {tracks[short[0]].count} values where its motion is known up to the largest offset that "
+            f"is tried, {LARGEST_OFFSET} s; {FEWEST} are needed: give longer poses or longer tracks"
+        )
+    found = search(tuple(tracks[recording] for recording in several), noise)
     return Diagnosis(
         tuple(_findings(found, [recording.source for recording in several])),
         found.bare.rms,
@@ -220,6 +224,7 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
         found.not_told,
         len(several),
         len(given),
+        len(short),
     )
 
 
