@@ -12,6 +12,7 @@ misprint / derived
 
 from __future__ import annotations
 
+import copyreg
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
@@ -34,8 +35,16 @@ NAMED = {name.upper(): Ledger(paper.PAPER, tuple(chain(*paper.PARTS))) for name,
 LEDGERS = tuple(ledger for _, ledger in sorted(NAMED.items(), key=lambda named: named[0][-4:]))
 """One ledger a paper, the oldest first."""
 
+_PLACES = {entry: (ledger.paper, entry.place) for ledger in LEDGERS for entry in ledger.entries}
+copyreg.pickle(Entry, lambda entry: (_entry, _PLACES[entry]) if entry in _PLACES else entry.__reduce_ex__(2))
+
 GROUPS = [part for paper in _PAPERS.values() for part in paper.PARTS]
 FEW = 20
+
+
+def _entry(paper: str, place: str) -> Entry:
+    """Return an entry of ours, which travels as its place: what checks it is no value."""
+    return next(entry for entry, known in _PLACES.items() if known == (paper, place))
 
 
 def __getattr__(name: str) -> Ledger:
