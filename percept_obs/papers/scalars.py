@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import methodcaller
 from typing import Any, ClassVar
 from xml.dom.minidom import Element
 
@@ -101,7 +102,7 @@ FUNCTIONS = {
     "norm": Norm,
     "norm1": SumNorm,
     "inner": Inner,
-    "signs": lambda vector: vector.applyfunc(sp.sign),
+    "signs": methodcaller("applyfunc", sp.sign),
     "lambdamin": SmallestEigenvalue,
 }
 """Functions that `reader` reads besides the usual ones."""

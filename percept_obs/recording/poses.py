@@ -13,7 +13,7 @@ from percept_obs.compile import Array
 from percept_obs.recording.derivatives import Derivative, Quadratic
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import readonly
-from percept_obs.validation import checked, numbers
+from percept_obs.validation import checked, numbers, travels
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -138,6 +138,7 @@ class Poses:
         return self.path(derivative).motion
 
 
+@travels
 @dataclass(frozen=True, eq=False)
 class CameraPath:
     """A camera's poses and velocities at K times.

@@ -63,6 +63,7 @@ class NeedsMoreOutputs(ValueError):
         )
 
 
+@travels
 @dataclass(frozen=True)
 class PartitionedSystem:
     """System with measured and hidden coordinates: (x1, x2)' = f(x1, x2).
