@@ -94,4 +94,5 @@ if __name__ == "__main__":
     warnings.simplefilter("ignore")
     for text in pickle.load(sys.stdin.buffer):
         value = pickle.loads(text)
-        pickle.dump((value, computed(value)), sys.stdout.buffer)
+        for part in (value, computed(value)):
+            pickle.dump(part, sys.stdout.buffer)
