@@ -98,7 +98,7 @@ class SmallestEigenvalue(Scalar):
         return (trace - sp.sqrt(trace**2 - 4 * determinant)) / 2
 
 
-FUNCTIONS = {
+FUNCTIONS: dict[str, Callable[..., Any]] = {
     "norm": Norm,
     "norm1": SumNorm,
     "inner": Inner,

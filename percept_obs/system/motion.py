@@ -353,7 +353,7 @@ def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:
 def _function(value: ArrayLike | Callable[[float], ArrayLike], block: sp.ImmutableMatrix) -> Callable[[Array], Array]:
     """One coefficient as a function of times, shape (T, entries); its values are checked once for all times."""
     if not callable(value):
-        return partial(_repeated, _rows(value, block, 1))
+        return Chain(len, partial(np.repeat, _rows(value, block, 1), axis=0))
     try:
         signature(value).bind(0.0)
     except TypeError as error:
@@ -370,10 +370,6 @@ def _values(function: Callable[[float], ArrayLike], block: sp.ImmutableMatrix, t
         if array.shape == (len(times), *_shape(block)) and np.isfinite(array).all():
             return array.reshape(len(times), -1)
     return np.concatenate([_rows(each, block, 1) for each in found])
-
-
-def _repeated(row: Array, times: Array) -> Array:
-    return np.repeat(row, len(times), axis=0)
 
 
 def _side_by_side(functions: Sequence[Callable[[Array], Array]], times: Array) -> Array:

@@ -8,6 +8,8 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any, TypeVar
 
+import numpy as np
+
 Class = TypeVar("Class", bound=type)
 
 
@@ -20,9 +22,9 @@ def travels(kind: Class) -> Class:
 def _reduced(value: Any) -> tuple[Any, ...]:
     kind, args = type(value), {"args": value.args} if isinstance(value, BaseException) else {}
     parts = {k: part for k, part in vars(value).items() if not isinstance(getattr(kind, k, None), cached_property)}
-    sealed = {name for name, part in parts.items() if _is_sealed(part)}
-    opened = {name: dict(part) if isinstance(part, MappingProxyType) else part for name, part in parts.items()}
-    return _made, (kind, opened | args, sealed)
+    mappings = {name: dict(part) for name, part in parts.items() if isinstance(part, MappingProxyType)}
+    arrays = {name for name, part in parts.items() if isinstance(part, np.ndarray) and not part.flags.writeable}
+    return _made, (kind, parts | mappings | args, arrays | mappings.keys())
 
 
 def _made(kind: Any, parts: dict[str, Any], sealed: Collection[str]) -> Any:
@@ -32,14 +34,10 @@ def _made(kind: Any, parts: dict[str, Any], sealed: Collection[str]) -> Any:
     return value
 
 
-def _is_sealed(part: Any) -> bool:
-    return isinstance(part, MappingProxyType) or not getattr(getattr(part, "flags", None), "writeable", True)
-
-
 def _seal(part: Any) -> Any:
     if isinstance(part, dict):
         return MappingProxyType({key: _seal(each) for key, each in part.items()})
-    if hasattr(part, "setflags"):
+    if isinstance(part, np.ndarray):
         part.setflags(write=False)
     return part
 

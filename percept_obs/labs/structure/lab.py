@@ -276,7 +276,7 @@ def motion_of(settings: Settings, samples: Motion | None = None) -> Motion:
     known = partial(_known, settings, typed)
     swings = settings["rate"] and np.any([settings[f"{name}_swing"] for name in PHASES])
     if swings or typed:
-        return replace(rigid(), signal=Signal(OverTime(known, typed and typed.breaks)))
+        return replace(rigid(), signal=Signal(OverTime(known, typed.breaks if typed else None)))
     (still,) = known(np.zeros(1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # the controls say their units
