@@ -321,6 +321,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add("--marker", type=_positive(float), metavar="MM", help="side of a marker (default: 3/4 of the square's)")
 
     options = parser.parse_args(arguments)
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="backslashreplace")  # a name may have letters that the terminal has not
     try:
         return options.run(options)
     except (ValueError, ModuleNotFoundError) as error:

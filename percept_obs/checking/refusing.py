@@ -5,6 +5,8 @@ from collections.abc import Iterable
 
 from lark import Token
 
+from percept_obs.validation import travels
+
 CLOSING = {
     "RPAR": "(",
     "RBRACE": "{",
@@ -16,6 +18,7 @@ CLOSING = {
 }
 
 
+@travels
 class CannotRead(ValueError):
     """A formula that cannot be read.
 

@@ -20,6 +20,7 @@ from percept_obs.observers.parts import hats
 from percept_obs.system.derivation import Derivation, Step
 from percept_obs.system.motion import rigid
 from percept_obs.system.surfaces import plane
+from percept_obs.validation import travels
 
 
 @cache
@@ -40,6 +41,7 @@ class Convention:
     changes: Mapping[sp.Symbol, sp.Expr] = field(hash=False)
 
 
+@travels
 @dataclass(frozen=True, eq=False)
 class Target:
     """The formulas that somebody's derivation is compared with.

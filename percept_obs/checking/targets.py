@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import singledispatch
+from functools import partial, singledispatch
 from itertools import accumulate, pairwise
 from typing import Any
 
@@ -97,11 +97,11 @@ def _(thing: Target) -> Target:
 def _(thing: PerspectiveSystem) -> Target:
     pool = frozenset((*thing.coordinates, *thing.parameters, *POINT))
     lines = _rates(thing.coordinates, thing.rate)
-    moves = dict.fromkeys((f"{s.name}dot" for s in POINT), lambda text: _moves(thing.motion))
-    slope = dict.fromkeys("FJ", lambda text: _jacobian(thing.jacobian(), pool))
+    moves = dict.fromkeys((f"{s.name}dot" for s in POINT), partial(_moves, thing.motion))
+    slope = dict.fromkeys("FJ", partial(_jacobian, thing.jacobian, pool))
     known = relations.of_system(thing)
     return Target(
-        lines, pool, thing.derivation, relations=known, elsewhere=lambda: _on_others(thing), others=moves | slope
+        lines, pool, thing.derivation, relations=known, elsewhere=partial(_on_others, thing), others=moves | slope
     )
 
 
@@ -121,7 +121,7 @@ def _(thing: PartitionedSystem) -> Target:
 @target_of.register
 def _(thing: CanonicalForm) -> Target:
     lines, known = _rates((*thing.x1, *thing.x2), thing.rate), relations.of_form(thing)
-    parts = dict.fromkeys((*relations.parts(thing), *_PARTS, "wT"), lambda text: _parts(thing))
+    parts = dict.fromkeys((*relations.parts(thing), *_PARTS, "wT"), partial(_parts, thing))
     return Target(lines, _letters(thing), thing.derivation, relations=known, others=parts)
 
 
@@ -129,9 +129,9 @@ def _(thing: CanonicalForm) -> Target:
 def _(thing: Observer) -> Target:
     pool = target_of(thing.equations).pool | _letters(thing.form)
     others: dict[str, Callable[[Text], Target]] = {
-        **dict.fromkeys((f"{e.name}dot" for e in thing.error), lambda text: _errors(thing)),
-        **dict.fromkeys("FJ", lambda text: _slope(thing)),
-        "Vdot": lambda text: _energy(thing, text),
+        **dict.fromkeys((f"{e.name}dot" for e in thing.error), partial(_errors, thing)),
+        **dict.fromkeys("FJ", partial(_slope, thing)),
+        "Vdot": partial(_energy, thing),
     }
     known = relations.of_observer(thing)
     return _default(Target(target_of(thing.equations).lines, pool, relations=known, others=others), thing)
@@ -145,13 +145,13 @@ def _default(target: Target, observer: Observer) -> Target:
     return target if lines == target.lines else replace(target, lines=lines, idle=target.lines)
 
 
-def _moves(motion: Motion) -> Target:
+def _moves(motion: Motion, text: Text) -> Target:
     """Return the target of a point's velocity."""
     velocity = motion.A * sp.ImmutableMatrix(POINT) + motion.b
     return Target(_rates(POINT, velocity), frozenset((*POINT, *motion.parameters)))
 
 
-def _parts(form: CanonicalForm) -> Target:
+def _parts(form: CanonicalForm, text: Text) -> Target:
     """Return the target of w, phi and g, whole or entry by entry."""
     entries = relations.parts(form)
     names = list(entries)
@@ -163,7 +163,7 @@ def _parts(form: CanonicalForm) -> Target:
 _PARTS = ("w", "phi", "g")
 
 
-def _errors(observer: Observer) -> Target:
+def _errors(observer: Observer, text: Text) -> Target:
     """Return the target of an observer's error dynamics, in terms of truth and error."""
     form, eq = observer.form, observer.equations
     lines = _rates(observer.error, observer.error_dynamics())
@@ -171,20 +171,21 @@ def _errors(observer: Observer) -> Target:
     truth = zip(hats(form.coordinates), form.coordinates, observer.error, strict=True)
     known = {yhat: y - e for yhat, y, e in truth} | dict(relations.of_form(form))
     pool = frozenset(explicit(s) for s in pool if "^" not in s.name)
-    others: dict[str, Callable[[Text], Target]] = {"Vdot": lambda text: _energy(observer, text)}
+    others: dict[str, Callable[[Text], Target]] = {"Vdot": partial(_energy, observer)}
     return _default(Target(lines, pool, relations=known, others=others), observer)
 
 
-def _slope(observer: Observer) -> Target:
+def _slope(observer: Observer, text: Text) -> Target:
     """Return the target of the Jacobian of an observer's estimates, without that of its other states."""
     eq, estimates = observer.equations, hats((*observer.form.x1, *observer.form.x2))
     if not set(estimates) <= set(eq.state):
         raise ValueError(f"the {observer.name} observer has other states than estimates; look at observer.jacobian()")
     slope = sp.ImmutableMatrix([eq.flow[eq.state.index(s)] for s in estimates]).jacobian(estimates)
-    return _default(_jacobian(slope, target_of(eq).pool), observer)
+    return _default(_jacobian(lambda: slope, target_of(eq).pool, text), observer)
 
 
-def _jacobian(slope: sp.MatrixBase, pool: frozenset[sp.Symbol]) -> Target:
+def _jacobian(derive: Callable[[], sp.MatrixBase], pool: frozenset[sp.Symbol], text: Text) -> Target:
+    slope = derive()
     lines = tuple(Line(f"F{i + 1}{j + 1}", explicit(slope[i, j])) for i in range(slope.rows) for j in range(slope.cols))
     return Target(lines, pool, blocks=dict.fromkeys("FJ", tuple(range(len(lines)))))
 
@@ -194,7 +195,7 @@ def _energy(observer: Observer, text: Text) -> Target:
     found = {d.name: d.formulas[-1] for d in text.definitions}
     if "V" not in found:
         raise ValueError("V' needs a V: begin with its line, such as V = (e1^2 + e2^2 + e3^2) / 2, and then V' = ...")
-    form, eq, errors = observer.form, observer.equations, _errors(observer)
+    form, eq, errors = observer.form, observer.equations, _errors(observer, text)
     V = found["V"].xreplace(dict(errors.relations))
     rates = dict(zip((*form.x1, *form.x2), form.rate, strict=True)) | dict(zip(eq.state, eq.flow, strict=True))
     rates |= dict(zip(observer.error, (line.formula for line in errors.lines), strict=True))
@@ -221,7 +222,7 @@ def _(thing: InstantaneousObservability) -> Target:
 def _(thing: StructureAndMotion) -> Target:
     scale = sp.Symbol(QUANTITIES[0], real=True)
     pool = _letters(thing.form) | {sp.Symbol(name, real=True) for name in QUANTITIES}
-    others = dict.fromkeys(("det", "Omega", "g", "Omegag"), lambda text: _case(thing, pool))
+    others = dict.fromkeys(("det", "Omega", "g", "Omegag"), partial(_case, thing, pool))
     return Target((Line("", thing.determinant, ZEROS),), pool, nonzero=frozenset({scale}), others=others)
 
 
@@ -230,7 +231,7 @@ def _(thing: Corollary) -> Target:
     return target_of(thing.choice())
 
 
-def _case(choice: StructureAndMotion, pool: frozenset[sp.Symbol]) -> Target:
+def _case(choice: StructureAndMotion, pool: frozenset[sp.Symbol], text: Text) -> Target:
     """Return the target of a choice of unknowns: Omega, g and Omega_g of ybar' = Omega + g, and the determinant."""
     form = choice.form
     parts = {"Omega": form.phi, "g": form.w.T * sp.Matrix(choice.theta), "Omegag": form.w.T}
@@ -247,9 +248,13 @@ def _(thing: LuenbergerObserver) -> Target:
     error = dict(zip(thing.error, (x - xhat for x, xhat in zip(form.state, thing.estimate, strict=True)), strict=True))
     others = dict.fromkeys(
         (f"{rho.name}dot" for rho in thing.error),
-        lambda text: Target(_rates(thing.error, thing.error_dynamics()), pool - set(form.state) - set(thing.estimate)),
+        partial(_error_of_points, thing, pool - set(form.state) - set(thing.estimate)),
     )
     return Target(_rates(thing.estimate, thing.flow), pool - set(error), relations=error, others=others)
+
+
+def _error_of_points(observer: LuenbergerObserver, pool: frozenset[sp.Symbol], text: Text) -> Target:
+    return Target(_rates(observer.error, observer.error_dynamics()), pool)
 
 
 @target_of.register
@@ -268,7 +273,7 @@ def _(thing: Derivation) -> Target:
         lines += [Line(name, value) for name, value in step.values.items()]
     if not lines:
         raise ValueError("the derivation has no formulas of its own to compare with; give one of its results")
-    return Target(tuple(lines), derivation=lambda: thing, blocks=blocks)
+    return Target(tuple(lines), derivation=partial(replace, thing), blocks=blocks)
 
 
 @target_of.register(sp.Basic)

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from percept_obs.compile.intermediate import definitions, written_out
-from percept_obs.validation import derived, refuse_names, set_fields
+from percept_obs.validation import derived, refuse_names, set_fields, travels
 
 Symbols = tuple[sp.Symbol, ...]
 Expressions = tuple[sp.Expr, ...]
 
 
+@travels
 @dataclass(frozen=True)
 class Equations:
     """Equations of a state between samples, at samples, and at resets.
@@ -57,11 +57,7 @@ class Equations:
     @cached_property
     def _hash(self) -> int:
         """Hash, which every run looks up and which takes long."""
-        return hash(tuple(self.__getstate__().values()))
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Fields without the hash, which is another one in another process."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
+        return hash(tuple(getattr(self, field.name) for field in fields(self)))
 
     @cached_property
     def switches(self) -> bool:

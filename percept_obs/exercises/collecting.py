@@ -34,6 +34,9 @@ LARGEST = 50_000_000
 POINTS = " (points)"
 """End of the names of columns that a teacher fills in."""
 
+UNFIT = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff]")
+"""Characters that files or spreadsheets do not take."""
+
 COUNTS = ("attempts", "hints", "minutes")
 
 
@@ -89,14 +92,18 @@ def collect(folder: Path, roster: Path | None = None, run_code: bool = False) ->
     for student in students(folder, roster):
         row: dict[str, Any] = {"student": student.name, "handed in": "missing", "copy": "", "altered": "", "faults": ""}
         mine: dict[str, Job] = {}
-        files = student.folder.rglob("*.ipynb") if student.folder else ()
-        for file in sorted((f for f in files if ".ipynb_checkpoints" not in f.parts), key=lambda f: f.lstat().st_mtime):
+        try:
+            files = handed_in(student.folder) if student.folder else []
+        except Exception as error:
+            files, row["faults"] = [], f"{_why(error)}; "
+        for file in files:
             try:
                 name, cells, said, shown = read(file)
                 job = compared(student.name, name, cells, said, run_code)
-            except (OSError, ValueError, RecursionError, MemoryError) as error:
-                row["faults"] += f"{file.name}: {str(error) or type(error).__name__}; "
+            except Exception as error:  # whatever is in it, the others are marked
+                row["faults"] += f"{file.name}: {_why(error)}; "
                 continue
+            row["faults"] += f"{file.name}: the newest of several copies, and marked; " * (name in mine)
             for task, *counts in WRITTEN.findall(shown):
                 for what, count in zip(COUNTS, map(int, counts), strict=True):
                     if (label := f"{name[:2]} {task} {what}") in job.columns:
@@ -136,39 +143,67 @@ def _mark(name: str, jobs: Sequence[Job]) -> None:
 
 
 def harmless(entry: Any) -> Any:
-    """Return an entry that no spreadsheet takes for a formula."""
-    return f"'{entry}" if isinstance(entry, str) and entry.startswith(("=", "+", "-", "@", "\t", "\r")) else entry
+    """Return an entry that every file takes, and no spreadsheet for a formula."""
+    if not isinstance(entry, str):
+        return entry
+    plain = UNFIT.sub(lambda found: found[0].encode("unicode_escape").decode(), entry[:LONGEST])
+    return f"'{plain}" if plain.startswith(("=", "+", "-", "@", "＝", "＋", "－", "＠", "\t")) else plain
+
+
+def _why(error: Exception) -> str:
+    return str(error) or type(error).__name__
 
 
 def filled_in(table: pd.DataFrame, earlier: pd.DataFrame) -> pd.DataFrame:
     """Return a table with what a teacher has written into an earlier one: points, and columns of his own."""
     own = [name for name in earlier if name not in table or name.endswith(POINTS)]
-    kept = earlier.set_index("student")[own].reindex(table["student"]).fillna("")
+    keys = (each.groupby("student").cumcount().rename("same name") for each in (earlier, table))
+    of_earlier, of_table = ([each["student"], key] for each, key in zip((earlier, table), keys, strict=True))
+    kept = earlier.set_index(of_earlier)[own].reindex(list(zip(*of_table, strict=True))).fillna("")
     return table.assign(**{name: kept[name].to_numpy() for name in own})
+
+
+def name_of(folder: Path) -> str:
+    """Return the name of a folder; bytes that are no UTF-8, as a zip of Windows brings them, are read as Latin-1."""
+    return folder.name.translate({0xDC00 + byte: chr(byte) for byte in range(128, 256)})
+
+
+def handed_in(folder: Path) -> list[Path]:
+    """Return the notebooks in a folder, the newest last; a ValueError or OSError says why there are none."""
+    if folder.is_symlink():
+        raise ValueError("its folder is a link to another one")
+    next(folder.iterdir(), None)  # raises where the search would be silent
+    files = (f for f in folder.rglob("*") if f.suffix.lower() == ".ipynb" and ".ipynb_checkpoints" not in f.parts)
+    if not (found := sorted(files, key=lambda f: f.lstat().st_mtime)):
+        raise ValueError("its folder holds no notebook, a file that ends in .ipynb")
+    return found
 
 
 def students(folder: Path, roster: Path | None) -> list[Student]:
     """Return the students of a roster, and whoever else has handed in."""
-    folders = sorted(f for f in folder.iterdir() if f.is_dir() and not f.is_symlink()) if folder.is_dir() else []
+    folders = sorted(f for f in folder.iterdir() if f.is_dir()) if folder.is_dir() else []
     if not folders:
         raise ValueError(f"{folder} holds no folders; put each student's notebooks into one with the student's name")
     if roster is None:
-        return [Student(f.name, f) for f in folders]
-    with open(roster, encoding="utf-8-sig", newline="") as file:
-        rows = [{key: (entry or "").strip() for key, entry in row.items() if key} for row in csv.DictReader(file)]
+        return [Student(name_of(f), f) for f in folders]
+    try:
+        with open(roster, encoding="utf-8-sig", newline="") as file:
+            rows = [{key: (entry or "").strip() for key, entry in row.items() if key} for row in csv.DictReader(file)]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ValueError(f"{roster} cannot be read; save it as CSV in UTF-8: {error}") from None
     names = [same_name(row.get("student", "")) for row in rows]
     if not rows or "" in names or len(set(names)) < len(names):
         raise ValueError(f"{roster} needs a first line with the word student, and below it each name once")
     found = []
     for row in rows:
         known = same_name(row.get("folder") or row["student"])
-        own = (f for f in folders if same_name(f.name) == known or same_name(f.name).startswith(f"{known}_"))
+        own = (f for f in folders if same_name(name_of(f)) == known or same_name(name_of(f)).startswith(f"{known}_"))
         try:
             due = datetime.fromisoformat(row["due"]) if row.get("due") else None
         except ValueError:
             raise ValueError(f"{row['student']} is due at {row['due']!r}; write it as 2026-03-01T12:00") from None
         found.append(Student(row["student"], next(own, None), due))
-    return found + [Student(f.name, f, None, False) for f in folders if all(s.folder != f for s in found)]
+    return found + [Student(name_of(f), f, None, False) for f in folders if all(s.folder != f for s in found)]
 
 
 def read(file: Path) -> tuple[str, dict[str, str], str, str]:
@@ -178,7 +213,10 @@ def read(file: Path) -> tuple[str, dict[str, str], str, str]:
     """
     if file.is_symlink() or not file.is_file() or file.lstat().st_size > LARGEST:
         raise ValueError(f"not a plain file of at most {LARGEST // 10**6} MB")
-    notebook = json.loads(file.read_bytes())
+    try:
+        notebook = json.loads(file.read_bytes())
+    except Exception as error:
+        raise ValueError(f"no notebook, for it cannot be read as JSON: {_why(error)}") from None
     cells = notebook.get("cells") if isinstance(notebook, dict) else None
     if not isinstance(cells, list) or not all(isinstance(cell, dict) for cell in cells):
         raise ValueError("not a notebook")
@@ -235,15 +273,18 @@ def compared(student: str, name: str, cells: Mapping[str, str], said: str, run_c
                 value = literal(f"answer = {run(cells[task], mine, task)}", "answer")
             if value is not ... and not _fits(value, answered(check)[0]):
                 raise ValueError("its cell gives no plain text or number")
-        except ValueError as error:
-            part[f"{name[:2]} {task}"] = f"unread: {error}"
+        except Exception as error:
+            part[f"{name[:2]} {task}"] = f"unread: {_why(error)}"
             continue
         part[f"{name[:2]} {task}"] = "empty"  # until it is marked
         if value is not ...:
             answers[task] = value
             part[f"{name[:2]} {task} answer"] = str(value)
     for task, _ in questions(name):
-        part[f"{name[:2]} {task} text"] = said_in(cells.get(f"{task}-model-answer-1", ""))
+        try:
+            part[f"{name[:2]} {task} text"] = said_in(cells.get(f"{task}-model-answer-1", ""))
+        except Exception as error:
+            part[f"{name[:2]} {task} text"] = f"unread: {_why(error)}"
     return Job(copy, altered, mine, answers, part)
 
 
@@ -277,13 +318,12 @@ def literal(source: str, name: str) -> Any:
 
 def said_in(source: str) -> str:
     """Return the sentence that a program hands to `model_answer`, without running it."""
+    calls = (node for part in _parsed(source) for node in ast.walk(part) if isinstance(node, ast.Call) and node.args)
+    asked = (call for call in calls if isinstance(call.func, ast.Name) and call.func.id == "model_answer")
     try:
-        calls = (
-            node for part in _parsed(source) for node in ast.walk(part) if isinstance(node, ast.Call) and node.args
-        )
-        said = [ast.literal_eval(call.args[0]) for call in calls if ast.unparse(call.func) == "model_answer"]
-    except ValueError:
-        return ""
+        said = [ast.literal_eval(call.args[0]) for call in asked]
+    except (ValueError, TypeError, RecursionError, MemoryError):
+        raise ValueError("its cell gives no plain text") from None
     return next((text for text in said if isinstance(text, str)), "")
 
 

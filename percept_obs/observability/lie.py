@@ -17,7 +17,7 @@ from percept_obs.observability.directions import in_words
 from percept_obs.observability.linearised import System, as_form, matching_form, names_of, rate_of
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
-from percept_obs.validation import MOST_TERMS, checked, limit
+from percept_obs.validation import MOST_TERMS, checked, limit, travels
 
 NEGLIGIBLE = 1e-8
 """A singular value below this share of the largest one is 0, when every row has the length 1."""
@@ -124,6 +124,7 @@ class Codistribution:
         return rf"$\displaystyle {sp.latex(self.matrix)},\quad {said}$"
 
 
+@travels
 @dataclass(frozen=True, eq=False)
 class LieRanks:
     """Ranks of the Lie derivatives' differentials along a trajectory, from `lie_ranks`.

@@ -220,6 +220,5 @@ def steered(
         raise refused
     rows = np.tile([motion.values[symbol] for symbol in motion.parameters], (len(times), 1))
     rows[:, [motion.parameters.index(symbol) for symbol in found.velocity]] = path.y[3:].T
-    smooth = CubicSpline(times, rows)
-    moving = replace(motion, signal=Signal(OverTime(lambda t: np.asarray(smooth(t)))))
+    moving = replace(motion, signal=Signal(OverTime(CubicSpline(times, rows))))
     return replace(scenario, name=f"{scenario.name}, steered", motion=moving)

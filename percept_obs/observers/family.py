@@ -255,6 +255,9 @@ class Family:
     def __repr__(self) -> str:
         return f"{self.key}{self._signature()}"
 
+    def __reduce__(self) -> str:
+        return self.key  # as a function, by its name
+
 
 def family(*, title: str, source: str, needs: str, claim: str, **others: Any) -> Callable[..., Family]:
     """Decorator that makes a `Family` of the function that derives the equations.

@@ -12,6 +12,7 @@ misprint / derived
 
 from __future__ import annotations
 
+import copyreg
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
@@ -34,8 +35,15 @@ NAMED = {name.upper(): Ledger(paper.PAPER, tuple(chain(*paper.PARTS))) for name,
 LEDGERS = tuple(ledger for _, ledger in sorted(NAMED.items(), key=lambda named: named[0][-4:]))
 """One ledger a paper, the oldest first."""
 
-GROUPS = [part for paper in _PAPERS.values() for part in paper.PARTS]
+_PLACES = {entry: (ledger.paper, entry.place) for ledger in LEDGERS for entry in ledger.entries}
+copyreg.pickle(Entry, lambda entry: (_entry, _PLACES[entry]) if entry in _PLACES else entry.__reduce_ex__(2))
+
 FEW = 20
+
+
+def _entry(paper: str, place: str) -> Entry:
+    """Return an entry of ours, which travels as its place: what checks it is no value."""
+    return next(entry for entry, known in _PLACES.items() if known == (paper, place))
 
 
 def __getattr__(name: str) -> Ledger:
@@ -127,19 +135,17 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
     wanted = [entry for ledger in ledgers for entry in ledger.entries]
     if len(wanted) > FEW and (processes or workers()) > 1:
         asked = set(wanted)
-        tasks = [(g, [k for k, entry in enumerate(group) if entry in asked]) for g, group in enumerate(GROUPS)]
+        parts = [[entry for entry in part if entry in asked] for paper in _PAPERS.values() for part in paper.PARTS]
         with ProcessPoolExecutor(processes) as pool:
-            results = bar(pool.map(_found, tasks), "parts", len(tasks))
-            for (g, numbers), found in zip(tasks, results, strict=True):
-                for k, values in zip(numbers, found, strict=True):
-                    vars(GROUPS[g][k]).update(values)  # where cached properties keep what they found
+            results = bar(pool.map(_found, parts), "parts", len(parts))
+            for entry, values in zip(chain(*parts), chain.from_iterable(results), strict=True):
+                vars(entry).update(values)  # where cached properties keep what they found
     return all([entry.agrees for entry in bar(wanted, "equations")])
 
 
-def _found(task: tuple[int, list[int]]) -> list[dict[str, object]]:
-    """Results of cached properties of some entries of a group."""
-    g, numbers = task
-    return [{"agrees": GROUPS[g][k].agrees, "finding": GROUPS[g][k].finding} for k in numbers]
+def _found(entries: Sequence[Entry]) -> list[dict[str, object]]:
+    """Results of cached properties of entries that share what they run."""
+    return [{"agrees": entry.agrees, "finding": entry.finding} for entry in entries]
 
 
 @checked

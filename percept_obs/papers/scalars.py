@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import methodcaller
 from typing import Any, ClassVar
 from xml.dom.minidom import Element
 
@@ -97,11 +98,11 @@ class SmallestEigenvalue(Scalar):
         return (trace - sp.sqrt(trace**2 - 4 * determinant)) / 2
 
 
-FUNCTIONS = {
+FUNCTIONS: dict[str, Callable[..., Any]] = {
     "norm": Norm,
     "norm1": SumNorm,
     "inner": Inner,
-    "signs": lambda vector: vector.applyfunc(sp.sign),
+    "signs": methodcaller("applyfunc", sp.sign),
     "lambdamin": SmallestEigenvalue,
 }
 """Functions that `reader` reads besides the usual ones."""

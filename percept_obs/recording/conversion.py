@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.recording.recording import Recording
 from percept_obs.system.surfaces import ImagingSurface
-from percept_obs.validation import checked
+from percept_obs.validation import Chain, checked
 
 
 @checked
@@ -56,10 +57,7 @@ def seen_on(recording: Recording, surface: ImagingSurface) -> Recording:
     if surface.radii:
         raise ValueError(f"rays say nothing of the size that the {surface.name} sees; convert to it without the size")
     order = [recording.names.index(name) for name in names]
-
-    def convert(outputs: Array) -> Array:
-        return _seen(surface, before.along(outputs[:, order]))[:, :-1]
-
+    convert = partial(_image, surface, before, order)
     truth, signal = recording.truth, recording.signal
     lengths = surface.distances(before.along(recording.outputs[:, order]))
     return replace(
@@ -68,11 +66,15 @@ def seen_on(recording: Recording, surface: ImagingSurface) -> Recording:
         names=tuple(symbol.name for symbol in surface.image_coordinates),
         view=surface,
         truth=None if truth is None else _seen(surface, before.locate(truth)),
-        signal=None if signal is None else lambda times: convert(signal(times)),
+        signal=None if signal is None else Chain(signal, convert),
         noise_variance=recording.noise_variance if surface.fits(before) else None,
         distances={name: values * lengths for name, values in recording.distances.items()},
         source=f"{recording.source}, seen on the {surface.name}",
     )
+
+
+def _image(surface: ImagingSurface, before: ImagingSurface, order: list[int], outputs: Array) -> Array:
+    return _seen(surface, before.along(outputs[:, order]))[:, :-1]
 
 
 def _seen(surface: ImagingSurface, points: Array) -> Array:

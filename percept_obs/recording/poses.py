@@ -15,7 +15,7 @@ from percept_obs.recording.pose_errors import PoseErrors
 from percept_obs.recording.smoother import FEWEST, Smoothed, smooth, smooth_turns
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import readonly
-from percept_obs.validation import checked, numbers, warn
+from percept_obs.validation import checked, numbers, travels, warn
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -240,6 +240,7 @@ def _densely(time: Array, placed: Smoothed, turned: Rotation, turning: Smoothed,
     return CameraPath(times, position, rotation.as_quat(), rotation.inv().apply(speed), rate, errors)
 
 
+@travels
 @dataclass(frozen=True, eq=False)
 class CameraPath:
     """A camera's poses and velocities at K times.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 import sympy as sp
@@ -20,7 +20,7 @@ from percept_obs.recording.recording import Recording
 from percept_obs.system.motion import Motion, ask_for_degrees, coefficients
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 from percept_obs.system.view import View
-from percept_obs.validation import checked
+from percept_obs.validation import checked, travels
 
 LONGEST_STEP_SHARE = 0.25
 """Longest interval between two checks of the distance, as a share of the motion's shortest time constant."""
@@ -225,23 +225,31 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
         view,
         scenario.known_motion,
         truth,
-        _signal(scenario),
+        _Outputs(scenario),
         variance,
         source=f"{scenario.name}, {duration:g} s, {camera}, seed {name}",
         unit=scenario.unit,
     )
 
 
-def _signal(scene: Scene) -> Callable[[Array], Array]:
-    """Return the outputs as a function of times; two results are kept, for observers ask for the same times again."""
+@travels
+@dataclass(frozen=True, eq=False)
+class _Outputs:
+    """A scene's outputs as a function of times; two results are kept, for observers ask for the same times again."""
 
-    @lru_cache(maxsize=2)
-    def outputs(times: bytes) -> Array:
-        found = scene.view.outputs(scene.coordinates(np.frombuffer(times)))
+    scene: Scene
+
+    def __call__(self, times: Array) -> Array:
+        return self._kept(np.asarray(times, dtype=float).tobytes())
+
+    @cached_property
+    def _kept(self) -> Callable[[bytes], Array]:
+        return lru_cache(maxsize=2)(self._found)
+
+    def _found(self, times: bytes) -> Array:
+        found = self.scene.view.outputs(self.scene.coordinates(np.frombuffer(times)))
         found.setflags(write=False)
         return found
-
-    return lambda times: outputs(np.asarray(times, dtype=float).tobytes())
 
 
 @lru_cache(maxsize=64)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import sympy as sp
@@ -15,7 +15,6 @@ from percept_obs.compile import Array, vectorised
 from percept_obs.structure.dynamics import CAMERA, OBJECT, OUTPUTS, ROTATION, d_s, scaled_dynamics, ybar3
 from percept_obs.system.forms import CanonicalForm, partition
 from percept_obs.system.motion import Motion, rigid
-from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import DISTANCE, OnePoint, View
 from percept_obs.validation import checked, numbers, set_fields
@@ -170,21 +169,16 @@ class StructureAndMotion(OnePoint):
             )
         known = [motion.parameters.index(symbol) for symbol in self._known]
         absent = [motion.parameters.index(symbol) for symbol in self._zeros]
-
-        def select(rows: Array) -> Array:
-            if rows[..., absent].any():
-                raise ImpossibleChoice(
-                    f"{', '.join(self.zero)} are said to be zero, but the motion has values up to "
-                    f"{np.abs(rows[..., absent]).max():.4g} m/s for them; take what is not zero out of zero"
-                )
-            return rows[..., known]
-
-        known_over_time, samples = motion.signal.at, motion.signal.samples
-        if callable(samples):
-            signal = Signal(OverTime(lambda times: select(known_over_time(times))))
-        else:
-            signal = Signal(select(samples), motion.signal.times)
+        signal = motion.signal.mapped(partial(self._select, known, absent))
         return Motion("rigid, partly known,", motion.A, motion.b, self._known, signal)
+
+    def _select(self, known: list[int], absent: list[int], rows: Array) -> Array:
+        if rows[..., absent].any():
+            raise ImpossibleChoice(
+                f"{', '.join(self.zero)} are said to be zero, but the motion has values up to "
+                f"{np.abs(rows[..., absent]).max():.4g} m/s for them; take what is not zero out of zero"
+            )
+        return rows[..., known]
 
     def _in_theta(self, hidden: tuple[sp.Symbol, ...]) -> dict[sp.Symbol, sp.Expr]:
         """The unknown quantities in terms of theta."""

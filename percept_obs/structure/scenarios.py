@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -65,24 +66,28 @@ def _circling(time: float) -> list[float]:
     return [0.3 * math.cos(time), 0.3 * math.sin(0.8 * time), -0.3 - 0.1 * math.sin(time)]
 
 
-def _wandering(components: int) -> Callable[[float], list[float]]:
+def _approaching(time: float) -> list[float]:
+    return [0.3 + 0.1 * math.sin(time), 0.3 + 0.1 * math.cos(time), 0.2 * math.sin(0.8 * time)]
+
+
+def _turning_back(time: float) -> list[float]:
+    return [0.3 * math.cos(time), 0.3 * math.sin(0.8 * time), -0.3 * math.sin(time + 1.0)]
+
+
+def _wandering(components: int, time: float) -> list[float]:
     """Velocity in m/s of an object, varying at up to 1 rad/s in its first components."""
-
-    def velocity(time: float) -> list[float]:
-        whole = [0.2 * math.sin(0.7 * time), 0.2 * math.cos(time), 0.1 * math.sin(0.5 * time)]
-        return [*whole[:components], *[0.0] * (3 - components)]
-
-    return velocity
+    whole = [0.2 * math.sin(0.7 * time), 0.2 * math.cos(time), 0.1 * math.sin(0.5 * time)]
+    return [*whole[:components], *[0.0] * (3 - components)]
 
 
 _CHWA_SIMULATION = {
     "IV.A": (1, (0.3, 0.2, -0.1), _STILL),
-    "IV.B": (2, (0.3, 0.2, -0.1), _wandering(3)),
-    "V.A": (3, _circling, _wandering(2)),
-    "V.B": (4, lambda t: [0.3 + 0.1 * math.sin(t), 0.3 + 0.1 * math.cos(t), 0.2 * math.sin(0.8 * t)], _wandering(1)),
-    "VI.A": (5, _circling, _wandering(3)),
-    "VI.B": (6, _circling, _wandering(2)),
-    "VI.C": (7, _circling, _wandering(1)),
+    "IV.B": (2, (0.3, 0.2, -0.1), partial(_wandering, 3)),
+    "V.A": (3, _circling, partial(_wandering, 2)),
+    "V.B": (4, _approaching, partial(_wandering, 1)),
+    "VI.A": (5, _circling, partial(_wandering, 3)),
+    "VI.B": (6, _circling, partial(_wandering, 2)),
+    "VI.C": (7, _circling, partial(_wandering, 1)),
 }
 
 
@@ -164,14 +169,15 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
     cases = {"simulation": _CHWA_SIMULATION, "experiment": _CHWA_EXPERIMENT}
     stages = [_stated(set_up, cases)[section] for section in ("IV.A", "IV.B")]
     still, moving = (chwa2019_simulation if set_up == "simulation" else chwa2019_experiment)("IV.A"), stages[1]
-
-    def at(time: float, column: int) -> Any:
-        velocity = stages[time > moves_at][column]
-        return velocity(time - moves_at) if callable(velocity) else velocity
-
-    motion = rigid(camera_velocity=lambda time: at(time, 1), point_velocity=lambda time: at(time, 2))
+    camera, object_ = (partial(_in_stage, [stage[k] for stage in stages], moves_at) for k in (1, 2))
+    motion = rigid(camera_velocity=camera, point_velocity=object_)
     name, choice = f"Chwa 2019, {set_up} IV", COROLLARIES[moving[0] - 1].choice()
     return replace(still, name=name, motion=motion, duration=2 * moves_at, choice=choice)
+
+
+def _in_stage(velocities: Sequence[Any], moves_at: float, time: float) -> Any:
+    velocity = velocities[time > moves_at]
+    return velocity(time - moves_at) if callable(velocity) else velocity
 
 
 @checked
@@ -190,11 +196,7 @@ def chwa2019_crossing() -> StructureScenario:
     >>> chwa2019_crossing().motion.known([2.0, 2.3])[:, 5].round(2).tolist()  # v_c3
     [-0.04, 0.05]
     """
-
-    def camera(time: float) -> list[float]:
-        return [0.3 * math.cos(time), 0.3 * math.sin(0.8 * time), -0.3 * math.sin(time + 1.0)]
-
-    motion = (_STILL, camera, _wandering(2))
+    motion = (_STILL, _turning_back, partial(_wandering, 2))
     return _structure("crossing v_c3 = 0", (0.4, 0.4, 0.05), 4.0, 3, motion, "after Chwa 2019, VII.A")
 
 

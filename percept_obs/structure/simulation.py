@@ -20,7 +20,7 @@ from percept_obs.structure.pixels import SignalToNoise, homography
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
-from percept_obs.validation import checked, numbers, set_fields
+from percept_obs.validation import Chain, checked, numbers, set_fields
 
 NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
@@ -423,6 +423,6 @@ def linear_view(recording: Recording) -> Recording:
         names=tuple(symbol.name for symbol in view.image_coordinates),
         view=view,
         truth=None if truth is None else np.hstack([view.scaled(truth[:, :3]), truth[:, 3:]]),
-        signal=None if signal is None else lambda times: view.scaled(signal(times)),
+        signal=None if signal is None else Chain(signal, view.scaled),
         noise_variance=None,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Literal
 
 import numpy as np
@@ -15,7 +15,7 @@ from percept_obs.recording import Recording
 from percept_obs.structure import COROLLARIES, StructureAndMotion, seen_as
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import Motion, rigid
-from percept_obs.system.signal import OverTime, Signal, slack_of
+from percept_obs.system.signal import slack_of
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
@@ -132,11 +132,12 @@ def semigeneral(
 def _with_velocities(motion: Motion, found: dict[str, float]) -> Motion:
     """Motion with some parameters replaced by constants."""
     names = [symbol.name for symbol in motion.parameters]
+    columns = {names.index(name): found[name] for name in set(names) & set(found)}
+    return replace(motion, signal=motion.signal and motion.signal.mapped(partial(_put, columns)))
 
-    def known(times: Array) -> Array:
-        rows = np.broadcast_to(motion.known(times), (len(times), len(names))).copy()
-        for name in set(names) & set(found):
-            rows[:, names.index(name)] = found[name]
-        return rows
 
-    return replace(motion, signal=Signal(OverTime(known)))
+def _put(columns: dict[int, float], rows: Array) -> Array:
+    rows = rows.copy()
+    for column, value in columns.items():
+        rows[:, column] = value
+    return rows

@@ -14,7 +14,7 @@ from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import slack_of
 from percept_obs.tracking.run import Run
-from percept_obs.validation import checked, positive
+from percept_obs.validation import checked, positive, travels
 
 __all__ = ["LeastSquares", "moving_window_least_squares"]
 
@@ -22,6 +22,7 @@ LARGEST_CONDITION = 1e6
 """Condition number of the normal equations beyond which a window determines no point."""
 
 
+@travels
 @dataclass(frozen=True, eq=False)
 class LeastSquares:
     """Least squares in the place of a run's observer.

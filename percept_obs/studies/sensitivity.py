@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from percept_obs.compile.variation import slope, slopes, variation
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.system.motion import TIME, Motion
-from percept_obs.system.signal import OverTime, Signal
+from percept_obs.system.signal import Signal
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
@@ -156,7 +157,7 @@ def sensitivity(
     )
     runs = []
     for direction in np.eye(len(moved)):  # the changes of the entries are further parameters of the motion
-        signal = _mapped(motion, lambda rows, more=direction: np.hstack([rows, np.tile(more, (len(rows), 1))]))
+        signal = _mapped(motion, partial(_with_columns, direction))
         changed = replace(motion, parameters=(*motion.parameters, *slopes(moved)), signal=signal)
         runs.append(track(recording, varied, start, believed=changed, **settings))
     of_unit = [recording.unit ** motion.lengths[motion.parameters.index(symbol)] for symbol in moved]
@@ -195,7 +196,7 @@ def misbelieved(motion: Motion, **errors: float) -> Motion:
     """
     moved = _moved(motion, tuple(errors))
     change = np.array([errors[s.name] if s in moved else 0.0 for s in motion.parameters])
-    return replace(motion, signal=_mapped(motion, lambda rows: rows + change))
+    return replace(motion, signal=_mapped(motion, partial(np.add, change)))
 
 
 def _moved(motion: Motion, entries: Sequence[str] | None) -> tuple[sp.Symbol, ...]:
@@ -211,12 +212,12 @@ def _moved(motion: Motion, entries: Sequence[str] | None) -> tuple[sp.Symbol, ..
 
 
 def _mapped(motion: Motion, of: Any) -> Signal:
-    """Return the signal whose rows are a function of the motion's."""
-    signal = motion.signal
-    assert signal is not None
-    if callable(signal.samples):
-        return Signal(OverTime(lambda times: of(motion.known(times))))
-    return Signal(of(signal.samples), signal.times)
+    assert motion.signal is not None
+    return motion.signal.mapped(of)
+
+
+def _with_columns(more: Array, rows: Array) -> Array:
+    return np.hstack([rows, np.tile(more, (len(rows), 1))])
 
 
 def _sizes(motion: Motion, moved: Sequence[sp.Symbol], time: Array) -> Array:

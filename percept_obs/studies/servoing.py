@@ -22,7 +22,7 @@ from percept_obs.recording import Recording
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
-from percept_obs.validation import bar, checked, load_pandas, positive
+from percept_obs.validation import bar, checked, load_pandas, positive, travels
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,6 +47,7 @@ BELIEVED = (0.1, 10.0)
 """Shares of the goal's inverse depth within which an observed one is believed."""
 
 
+@travels
 @dataclass(frozen=True, eq=False)
 class Servoing:
     """Closed loops from S starts over K samples of p points.

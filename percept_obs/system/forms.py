@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, reduce
+from functools import cached_property, partial, reduce
 from itertools import product
 from typing import Any
 
@@ -15,9 +15,10 @@ from percept_obs.compile import Intermediate
 from percept_obs.system.derivation import Derivation, equals, rates, where
 from percept_obs.system.motion import Motion
 from percept_obs.system.view import View
-from percept_obs.validation import set_fields
+from percept_obs.validation import set_fields, travels
 
 
+@travels
 class NotAffine(ValueError):
     """The measured outputs' rate is not affine in the hidden coordinates.
 
@@ -51,6 +52,7 @@ class NotAffine(ValueError):
         )
 
 
+@travels
 class NeedsMoreOutputs(ValueError):
     """The measured outputs' rates do not determine the hidden coordinates."""
 
@@ -61,6 +63,7 @@ class NeedsMoreOutputs(ValueError):
         )
 
 
+@travels
 @dataclass(frozen=True)
 class PartitionedSystem:
     """System with measured and hidden coordinates: (x1, x2)' = f(x1, x2).
@@ -255,20 +258,24 @@ class CanonicalForm(PartitionedSystem):
             "What multiplies the hidden coordinates in the measured ones' rate:": (
                 equals(r"w^T = \frac{\partial \dot x_1}{\partial x_2}", self.w.T),
                 dict(zip(shares, self.w.T, strict=True)),
-                lambda turned: replace(self, w=sp.ImmutableMatrix(*self.w.T.shape, turned).T).rate,
+                partial(self._rate_with, "w"),
             ),
             "What is left of it without them:": (
                 equals(r"\phi", self.phi),
                 {f"what is left of {s}'": entry for s, entry in zip(measured, self.phi, strict=True)},
-                lambda phi: replace(self, phi=sp.ImmutableMatrix(phi)).rate,
+                partial(self._rate_with, "phi"),
             ),
             "How the hidden coordinates change:": (
                 equals(r"g", self.g),
                 rates(self.x2, self.g),
-                lambda g: replace(self, g=sp.ImmutableMatrix(g)).rate,
+                partial(self._rate_with, "g"),
             ),
         }
         return Derivation.of(formulas)
+
+    def _rate_with(self, part: str, entries: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+        column = sp.ImmutableMatrix(entries)
+        return replace(self, **{part: column.reshape(*self.w.T.shape).T if part == "w" else column}).rate
 
     def _repr_latex_(self) -> str:
         moved = rf"{sp.latex(self.w.T)} {sp.latex(sp.Matrix(self.x2))} + {sp.latex(self.phi)}"

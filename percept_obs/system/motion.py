@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, wraps
+from functools import cached_property, partial, wraps
 from inspect import signature
 from typing import Any
 
@@ -17,6 +17,7 @@ from percept_obs.system.breaks import breaks_of
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.validation import (
     MOST_TERMS,
+    Chain,
     Coefficients,
     are_numbers,
     checked,
@@ -333,12 +334,11 @@ def bound(
         entries = [e for value, block in coefficients for e in matrix(value, _title(block), *block.shape)]
         A, b = (each.xreplace(dict(zip(symbols, entries, strict=True))) for each in (A, b))
         free = tuple(sorted(A.free_symbols | b.free_symbols, key=str))
-        at = OverTime(lambda times: times[:, None], lambda until: breaks_of(TIME, (*A, *b), until))
+        at = OverTime(Chain(np.atleast_2d, np.transpose), partial(breaks_of, TIME, (*A, *b)))
         return Motion(name, A, b, free, Signal(at) if free == (TIME,) else None)
     if any(map(callable, values)):
         functions = [_function(value, block) for value, block in coefficients]
-        function = OverTime(lambda times: np.hstack([rows(times) for rows in functions]))
-        return Motion(name, A, b, symbols, Signal(function))
+        return Motion(name, A, b, symbols, Signal(OverTime(partial(_side_by_side, functions))))
     times = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
     if times is not None and not times.size:
         raise ValueError("the times of the motion are empty; give one for each sample, or leave times out")
@@ -384,25 +384,27 @@ def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:
 def _function(value: ArrayLike | Callable[[float], ArrayLike], block: sp.ImmutableMatrix) -> Callable[[Array], Array]:
     """One coefficient as a function of times, shape (T, entries); its values are checked once for all times."""
     if not callable(value):
-        row = _rows(value, block, 1)
-        return lambda times: np.repeat(row, len(times), axis=0)
-    shape = _shape(block)
+        return Chain(len, partial(np.repeat, _rows(value, block, 1), axis=0))
     try:
         signature(value).bind(0.0)
     except TypeError as error:
         raise ValueError(f"{_title(block)} must be a function of a time alone: {error}") from None
     except ValueError:  # some functions do not tell their arguments
         pass
+    return partial(_values, value, block)
 
-    def at(times: Array) -> Array:
-        found = [value(time) for time in times.tolist()]
-        if all(type(each) in (list, tuple, np.ndarray) for each in found) and are_numbers(found):
-            array = np.asarray(found, dtype=float)
-            if array.shape == (len(times), *shape) and np.isfinite(array).all():
-                return array.reshape(len(times), -1)
-        return np.concatenate([_rows(each, block, 1) for each in found])
 
-    return at
+def _values(function: Callable[[float], ArrayLike], block: sp.ImmutableMatrix, times: Array) -> Array:
+    found = [function(time) for time in times.tolist()]
+    if all(type(each) in (list, tuple, np.ndarray) for each in found) and are_numbers(found):
+        array = np.asarray(found, dtype=float)
+        if array.shape == (len(times), *_shape(block)) and np.isfinite(array).all():
+            return array.reshape(len(times), -1)
+    return np.concatenate([_rows(each, block, 1) for each in found])
+
+
+def _side_by_side(functions: Sequence[Callable[[Array], Array]], times: Array) -> Array:
+    return np.hstack([rows(times) for rows in functions])
 
 
 def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Array:

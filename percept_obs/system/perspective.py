@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from itertools import combinations
 from typing import Any
 
@@ -14,7 +14,7 @@ from percept_obs.system.derivation import Derivation, equals, joined, rates, whe
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem, partition
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
-from percept_obs.validation import checked
+from percept_obs.validation import Chain, checked
 
 
 @checked
@@ -169,11 +169,12 @@ class PerspectiveSystem:
         last = (
             "Multiplied out:" if surface.multiplied_out else "Written shortly, with the distance's own rate in front:"
         )
+        rate = partial(self._rate, gradients)
         formulas: dict[str, str | tuple[Any, ...]] = {
             "The point moves:": (
                 equals(rf"\frac{{d}}{{dt}} {point}", f"{sp.latex(motion.A)} {point} + {sp.latex(motion.b)}"),
                 rates(POINT, motion.A * sp.ImmutableMatrix(POINT) + motion.b),
-                lambda found: self._rate(gradients, self._seen_on_the_ray(found)),
+                Chain(self._seen_on_the_ray, rate),
             ),
             f"It is seen on the {surface.name} surface:": (
                 rf"{y} = {sp.latex(sp.Matrix(surface.image))},\quad {eta} = {sp.latex(1 / surface.distance)}",
@@ -189,7 +190,7 @@ class PerspectiveSystem:
                     ]
                 ),
                 {f"m{k}": entry for k, entry in enumerate(surface.ray, 1)},
-                lambda ray: self._rate(gradients, self._velocity_along(ray)),
+                Chain(self._velocity_along, rate),
             ),
             "Derivatives of the image coordinates, and of the distance l, taken on the ray:": (
                 rf"J(m) = {sp.latex(gradients[:-1, :])},\quad \nabla l(m) = {sp.latex(gradients[-1, :])}",
@@ -198,12 +199,12 @@ class PerspectiveSystem:
                     for i, way in enumerate(ways)
                     for j, axis in enumerate(POINT)
                 },
-                lambda found: self._rate(sp.ImmutableMatrix(len(ways), 3, found), self._velocity),
+                Chain(partial(sp.ImmutableMatrix, len(ways), 3), partial(self._rate, velocity=self._velocity)),
             ),
             "The velocity, times the inverse distance:": (
                 equals(rf"A m + b\,{eta}", self._velocity),
                 {f"the velocity along {axis}": entry for axis, entry in zip(POINT, self._velocity, strict=True)},
-                lambda found: self._rate(gradients, sp.ImmutableMatrix(found)),
+                Chain(sp.ImmutableMatrix, rate),
             ),
             "Image coordinates do not change with scale, so the inverse distance cancels:": (
                 rf"\dot y = J(m)\,(A m + b\,{eta}),\quad \dot{{{eta}}} = -{eta}\, \nabla l(m) \cdot (A m + b\,{eta})",

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags
-from percept_obs.validation import checked, numbers, set_fields
+from percept_obs.validation import Chain, checked, numbers, set_fields
 
 
 def slack_of(times: Array) -> float:
@@ -66,7 +66,8 @@ class Signal:
         """Times up to a last one between which the signal is smooth, as far as they are known."""
         if self.times is not None:
             return self.times
-        return self.samples.breaks(until) if isinstance(self.samples, OverTime) else ()
+        breaks = getattr(self.samples, "breaks", None)
+        return breaks(until) if breaks else ()
 
     def at(self, times: ArrayLike) -> Array:
         """Return the values at times in seconds, shape (T, n), or (1, n) if constant; refuse times outside."""
@@ -83,13 +84,19 @@ class Signal:
             )
         return np.stack([np.interp(times, self.times, column) for column in self.samples.T], axis=-1)
 
+    def mapped(self, of: Callable[[Array], Array]) -> Signal:
+        """Return the signal whose rows are a function of this one's."""
+        if callable(self.samples):
+            return Signal(OverTime(Chain(self.at, of), getattr(self.samples, "breaks", None)))
+        return Signal(of(self.samples), self.times)
+
 
 @dataclass(frozen=True, eq=False)
 class OverTime:
     """Function of time that returns its rows at many times at once, for a run asks for ten thousands."""
 
     rows: Callable[[Array], Array]
-    breaks: Callable[[float], Sequence[float]] = lambda until: ()  # up to a time, as `breaks_of` gives them
+    breaks: Callable[[float], Sequence[float]] | None = None  # up to a time, as `breaks_of` gives them
 
     def __call__(self, time: float) -> Array:
         """Values at one time, shape (n,)."""

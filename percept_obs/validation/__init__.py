@@ -24,3 +24,5 @@ from percept_obs.validation.kinds import are_numbers as are_numbers
 from percept_obs.validation.limits import MOST_TERMS as MOST_TERMS
 from percept_obs.validation.limits import TooMuchWork as TooMuchWork
 from percept_obs.validation.limits import limit as limit
+from percept_obs.validation.travel import Chain as Chain
+from percept_obs.validation.travel import travels as travels

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from percept_obs.validation.environment import load_pandas
 from percept_obs.validation.kinds import FLOAT, Kind, are_numbers, is_real, kind_of, with_article
+from percept_obs.validation.travel import travels
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 
@@ -58,6 +59,8 @@ def checked(thing: Thing) -> Thing:
     """
     if not isinstance(thing, type):
         return _guarded(thing, thing.__qualname__.removesuffix(".__init__"), thing)
+    if is_dataclass(thing):
+        travels(thing)
     for name, member in list(vars(thing).items()):
         if name == "__init__" or not name.startswith("_"):
             title = thing.__name__ if name == "__init__" else f"{thing.__name__}.{name}"

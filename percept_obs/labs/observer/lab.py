@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -317,7 +318,7 @@ def _motion(settings: Settings) -> Motion:
     """The motion of settings: constant, or as it was typed."""
     if settings["motion"].strip():
         typed, numbers = read_motion(settings["motion"], BLOCKS), _numbers(settings)
-        return replace(MOTION, signal=Signal(OverTime(lambda times: typed.rows(times, numbers), typed.breaks)))
+        return replace(MOTION, signal=Signal(OverTime(partial(typed.rows, numbers=numbers), typed.breaks)))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # the controls say their units
         return affine(settings["A"], settings["b"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -86,19 +86,24 @@ def weight_of(settings: Settings, states: int) -> LyapunovMatrix:
     kind, size, duration = settings["weight"], settings["size"], settings["duration"]
     text = settings.get(TYPED_IN.get(kind, ""), "")
     diagonal = read_weight(text) if text.strip() else (SIZE,)
-
-    def matrices(times: Array) -> Array:
-        entries = np.tile(_entries(diagonal, times, size), states // len(diagonal))
-        return np.asarray(entries[:, :, None] * np.eye(states))
-
+    rows = partial(_rows, diagonal, size, states)
     if kind == "scheduled":
-        return scheduled(lambda t: size * (settings["final"] / size) ** (t / duration))
+        return scheduled(partial(_growing, size, settings["final"], duration))
     if kind == "typed" and _varies(diagonal):
-        return scheduled(OverTime(lambda times: matrices(times).reshape(len(times), -1)))
-    start = matrices(np.zeros(1))[0] if text.strip() else size
+        return scheduled(OverTime(rows))
+    start = rows(np.zeros(1)).reshape(states, states) if text.strip() else size
     if kind == "lyapunov":
         return lyapunov(start, settings["decrease"])
     return riccati(start, settings["forgetting"]) if kind == "riccati" else constant(start)
+
+
+def _rows(diagonal: Diagonal, size: float, states: int, times: Array) -> Array:
+    entries = np.tile(_entries(diagonal, times, size), states // len(diagonal))
+    return np.asarray(entries[:, :, None] * np.eye(states)).reshape(len(times), -1)
+
+
+def _growing(size: float, final: float, duration: float, time: float) -> float:
+    return size * (final / size) ** (time / duration)
 
 
 def refuse_P(settings: Settings) -> None:

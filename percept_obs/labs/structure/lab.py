@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import samples_for_the_page
 from percept_obs.labs.shared.schema import Schema, Settings
-from percept_obs.labs.shared.typed_motion import read_motion
+from percept_obs.labs.shared.typed_motion import Typed, read_motion
 from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
 from percept_obs.labs.structure.settings import DRIVE, MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
@@ -273,18 +273,19 @@ def motion_of(settings: Settings, samples: Motion | None = None) -> Motion:
     if samples:
         return samples
     typed = read_motion(settings["motion"], BLOCKS) if settings["motion"].strip() else None
-
-    def known(times: Array) -> Array:
-        rows = _velocities(settings, times)
-        return typed.rows(times, rows) if typed else rows
-
+    known = partial(_known, settings, typed)
     swings = settings["rate"] and np.any([settings[f"{name}_swing"] for name in PHASES])
     if swings or typed:
-        return replace(rigid(), signal=Signal(OverTime(known, *([typed.breaks] if typed else []))))
+        return replace(rigid(), signal=Signal(OverTime(known, typed.breaks if typed else None)))
     (still,) = known(np.zeros(1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # the controls say their units
         return rigid(camera_angular_velocity=still[:3], camera_velocity=still[3:6], point_velocity=still[6:])
+
+
+def _known(settings: Settings, typed: Typed | None, times: Array) -> Array:
+    rows = _velocities(settings, times)
+    return typed.rows(times, rows) if typed else rows
 
 
 def _velocities(settings: Settings, times: Array) -> Array:
