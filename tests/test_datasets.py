@@ -227,7 +227,7 @@ def test_without_a_network_the_cut_is_read_and_a_sentence_says_so(
     monkeypatch.setattr(urllib.request, "urlopen", answer)
     assert find_utias() == UTIAS_CUT
     said = capsys.readouterr().out
-    for words in (problem, "its cut", ADDRESS, "PERCEPT_OBS_UTIAS"):
+    for words in (problem, "a cut that comes with percept_obs", ADDRESS, "PERCEPT_OBS_UTIAS"):
         assert words in said
     assert not cache.exists()
 

@@ -163,9 +163,9 @@ def _fetched() -> Path:
         write_whole(file, content)
     except OSError as error:
         print(
-            f"The UTIAS recording could not be fetched ({error}), so its cut in percept_obs is read: the same tracks. "
-            f"To have the whole, download {UTIAS_ADDRESS} and name its folder in the environment variable "
-            f"{UTIAS_VARIABLE}."
+            f"The UTIAS recording could not be fetched ({error}), so a cut that comes with percept_obs is read; it has "
+            f"the same tracks. To have the whole, download {UTIAS_ADDRESS} and name its folder in the environment "
+            f"variable {UTIAS_VARIABLE}."
         )
         return UTIAS_CUT
     return file
