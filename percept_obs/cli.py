@@ -36,11 +36,11 @@ def lab(options: argparse.Namespace) -> int:
     """Copy the notebooks and open the first one in JupyterLab."""
     directory: Path = options.directory
     _refuse_a_file(directory)
+    if not options.copy_only and util.find_spec("jupyterlab") is None:
+        raise _Mistake(f'JupyterLab is missing; get it with: {sys.executable} -m pip install "percept-obs[course]"', 1)
     copy_notebooks(directory, options.readers, options.student)
     if options.copy_only:
         return 0
-    if util.find_spec("jupyterlab") is None:
-        raise _Mistake(f'JupyterLab is missing; get it with: {sys.executable} -m pip install "percept-obs[lab]"', 1)
 
     # As an address rather than a file: so the link that JupyterLab prints leads to the notebook as well.
     address = f"--LabApp.default_url=/lab/tree/{FIRST_NOTEBOOK}"

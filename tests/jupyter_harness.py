@@ -17,7 +17,7 @@ import time
 import traceback
 import urllib.request
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from html.parser import HTMLParser
@@ -139,9 +139,10 @@ def _write_down(what) -> None:
 PRELUDE = f"""
 import sys
 sys.path.insert(0, {str(Path(__file__).parent)!r})
-import jupyter_harness
+import jupyter_harness, packages
 sys.path.pop(0)
 jupyter_harness.watch()
+packages.hide(%r)
 """
 MOVE = "jupyter_harness.move_every_control()"
 SETTLE = "import asyncio\nawait asyncio.sleep(0.3)  # what a callback put off happens now"
@@ -199,11 +200,15 @@ def fork_kernel(client) -> None:
 
 
 def execute(
-    notebook: nbformat.NotebookNode, folder: Path, beside: Mapping[int, Sequence[str]] = MappingProxyType({})
+    notebook: nbformat.NotebookNode,
+    folder: Path,
+    beside: Mapping[int, Sequence[str]] = MappingProxyType({}),
+    absent: Collection[str] = (),
 ) -> dict[str, dict]:
     """Run a notebook in a fresh kernel in a folder, move its controls, and return the states of its widgets.
 
-    The outputs are put into the notebook.  Programs `beside` it run after the cell of their number.
+    The outputs are put into the notebook.  Programs `beside` it run after the cell of their number.  Modules that are
+    `absent` are there as little as if they were not installed.
 
     Raises
     ------
@@ -216,7 +221,7 @@ def execute(
     if FORK:
         fork_kernel(client)
     with client.setup_kernel():
-        _execute_beside(client, PRELUDE)
+        _execute_beside(client, PRELUDE % set(absent))
         for k, cell in enumerate(notebook.cells):
             client.execute_cell(cell, k)
             for program in beside.get(k, ()):
@@ -317,7 +322,7 @@ def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
     if importlib.util.find_spec("jupyterlab") is None:
         from conftest import missing  # only here, for notebooks' kernels import this module, too
 
-        missing("jupyterlab", 'JupyterLab is missing; get it with: python -m pip install "percept-obs[lab]".')
+        missing("jupyterlab", 'JupyterLab is missing; get it with: python -m pip install "percept-obs[course]".')
     for name, text in SETTINGS.items():
         file = home / f"settings/@jupyterlab/{name}.jupyterlab-settings"
         file.parent.mkdir(parents=True)

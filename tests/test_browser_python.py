@@ -1,7 +1,6 @@
 """The package does in a browser's Python what it does elsewhere: no threads, no processes, no extras."""
 
 import importlib.metadata
-import json
 import os
 import subprocess
 import sys
@@ -9,10 +8,10 @@ from pathlib import Path
 
 import pytest
 from jupyter_harness import NOTEBOOKS
+from packages import required
 from packaging.utils import canonicalize_name
 from sample_sizes import sampled
-from utias_folder import utias_folder
-from without_threads import required
+from without_threads import IN_LITE, PLATFORM
 
 from percept_obs.exercises.models import notebooks
 from percept_obs.site.lite import BESIDE
@@ -62,20 +61,17 @@ def is_pure(name):
 
 
 def test_every_package_that_is_required_is_pure_or_built_for_the_browser():
-    found = {name.lower(): wanted for name, wanted in required(extra="data").items()}
-    assert not {"pandas", "pyyaml"} & set(map(str.lower, required())), "a plain install has grown"
+    found = required("percept-obs[data]", **PLATFORM)
+    assert not {"pandas", "pyyaml"} & set(required("percept-obs", **PLATFORM)), "a plain install has grown"
     assert {"numpy", "sympy", "anywidget", "ipython", "traitlets"} <= set(found)
-    assert {name.lower() for name in found if not is_pure(name)} <= {*BUILT_FOR_PYODIDE, "psygnal", "wcwidth"}
+    assert {name for name in found if not is_pure(name)} <= {*BUILT_FOR_PYODIDE, "psygnal", "wcwidth"}
     assert not {"numba", "psutil", "pyzmq", "tornado", "jupyterlab"} & set(found)
     for name, version in BUILT_FOR_PYODIDE.items():
         assert version in found[name], f"{name} {version} is what Pyodide has; {found[name]} is asked for"
 
 
 def test_every_package_is_pyodide_s_or_stands_beside_the_notebooks_or_comes_from_pypi():
-    found = {
-        canonicalize_name(name)
-        for name in (*required(extra="data"), *required("filterpy"), "filterpy", "comm", "xarray")
-    }
+    found = set(required("percept-obs[data]", *IN_LITE, "comm", **PLATFORM)) - {"percept-obs"}
     beside = {canonicalize_name(name) for name in BESIDE}
     assert not beside & IN_PYODIDE
     assert found - IN_PYODIDE - beside - OF_THE_KERNEL <= FROM_PYPI
@@ -83,14 +79,12 @@ def test_every_package_is_pyodide_s_or_stands_beside_the_notebooks_or_comes_from
 
 @pytest.mark.slow
 @pytest.mark.parametrize("what", ["modules", *sampled(["00_start.ipynb"], sorted(notebooks()))])
-def test_modules_import_and_notebooks_run_without_threads_processes_sockets_and_numba(what, tmp_path, monkeypatch):
-    if "load_utias" in json.dumps(notebooks().get(what)):
-        monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(utias_folder()))
+def test_modules_import_and_notebooks_run_without_threads_processes_sockets_and_numba(what, tmp_path):
     command = [sys.executable, HERE / "without_threads.py", what if what == "modules" else NOTEBOOKS / what]
     before = children_computed()
     answer = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
     if what.startswith("16"):  # films, of which a note at its beginning in a browser tells
-        assert 'get it with: python -m pip install "percept-obs[film]"' in answer.stderr
+        assert "av, cv2 is missing, and this notebook needs it" in answer.stderr
         return
     assert answer.returncode == 0, answer.stderr[-2000:]
     print(f"{what:32} {children_computed() - before:6.1f} s of computing")

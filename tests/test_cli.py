@@ -120,12 +120,12 @@ def test_jupyterlab_opens_the_first_notebook_and_outlives_control_c(launches, tm
     assert launches == [(command, tmp_path)]
 
 
-def test_a_missing_jupyterlab_is_named_and_how_to_get_it(launches, tmp_path, monkeypatch, capsys):
+def test_a_missing_jupyterlab_is_named_before_anything_is_copied(launches, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(util, "find_spec", lambda name: None)
-    assert cli.main(["lab", str(tmp_path)]) == 1
-    assert 'pip install "percept-obs[lab]"' in capsys.readouterr().err
+    assert cli.main(["lab", str(tmp_path / "mine")]) == 1
+    assert 'pip install "percept-obs[course]"' in capsys.readouterr().err
     assert launches == []
-    assert (tmp_path / "00_start.ipynb").is_file()
+    assert not (tmp_path / "mine").exists()
 
 
 @pytest.mark.parametrize(("holds", "code"), [(True, 0), (False, 1)])

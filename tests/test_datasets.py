@@ -1,10 +1,11 @@
-"""Claim: the UTIAS recording converts to its tables, signs included, and no other file passes for it."""
+"""Claim: the UTIAS recording and its cut convert to the same tables, signs included; no other file passes for them."""
 
 from __future__ import annotations
 
 import io
 import urllib.error
 import urllib.request
+from dataclasses import asdict
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -14,11 +15,12 @@ import platformdirs
 import pytest
 from conftest import missing
 from numpy.typing import NDArray
-from utias_folder import utias_folder
+from scipy.io import loadmat
+from utias_cut import cut, whole, write
 
 from percept_obs.recording import Sighting
 from percept_obs.recording.stereo_mat import StereoTracks
-from percept_obs.recording.utias import DatasetUnavailable, find_utias, utias_tracks
+from percept_obs.recording.utias import UTIAS_CUT, find_utias, utias_tracks
 
 Values = NDArray[np.float64]
 
@@ -53,12 +55,30 @@ def unset(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="module")
 def folder() -> Path:
     """The recording's folder, found before the network is cut."""
-    return utias_folder()
+    return Path(whole().parent)
 
 
 @pytest.fixture(scope="module")
-def tables(folder: Path) -> StereoTracks:
-    return utias_tracks(folder)
+def tables() -> StereoTracks:
+    return utias_tracks(UTIAS_CUT)
+
+
+def test_the_cut_has_all_that_is_read_of_the_recording(folder: Path, tables: StereoTracks, tmp_path: Path) -> None:
+    np.testing.assert_equal(asdict(tables), asdict(utias_tracks(folder)))
+    write(cut(folder / "dataset3.mat"), tmp_path / "anew.mat")
+    anew, shipped = loadmat(tmp_path / "anew.mat"), loadmat(UTIAS_CUT)
+    np.testing.assert_equal(anew, shipped, err_msg="python tests/utias_cut.py writes it again")
+
+
+def test_the_cut_is_small_and_stands_beside_its_licence_and_credit() -> None:
+    assert UTIAS_CUT.stat().st_size <= 400_000
+    text = (UTIAS_CUT.parent / "LICENSE").read_text("utf-8")
+    for words in (
+        "AER1513",
+        "MIT License\n\nCopyright (c) 2017 STARS Laboratory\n\nPermission is hereby granted",
+        "AS IS",
+    ):
+        assert words in text
 
 
 def assert_agree(name: str, columns: list[Values]) -> None:
@@ -191,24 +211,24 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder / "percept_obs"
 
 
-@pytest.mark.usefixtures("unset", "cache")
-def test_a_failed_download_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: Any, **__: Any) -> None:
-        raise urllib.error.URLError("unreachable")
+def unreachable(*_: Any, **__: Any) -> io.BytesIO:
+    raise urllib.error.URLError("unreachable")
 
-    monkeypatch.setattr(urllib.request, "urlopen", fail)
-    with pytest.raises(DatasetUnavailable) as caught:
-        find_utias()
-    for words in ("unreachable", ADDRESS, "by hand", "path=", "PERCEPT_OBS_UTIAS"):
-        assert words in str(caught.value)
-    assert isinstance(caught.value, OSError)
+
+def log_in(*_: Any, **__: Any) -> io.BytesIO:
+    return io.BytesIO(b"please log in")
 
 
 @pytest.mark.usefixtures("unset")
-def test_another_file_is_not_kept(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(urllib.request, "urlopen", lambda *_, **__: io.BytesIO(b"please log in"))
-    with pytest.raises(DatasetUnavailable, match=r"login page .* its SHA-256 is \w+\); .* by hand"):
-        find_utias()
+@pytest.mark.parametrize(("answer", "problem"), [(unreachable, "unreachable"), (log_in, "login page")])
+def test_without_a_network_the_cut_is_read_and_a_sentence_says_so(
+    cache: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], answer: Any, problem: str
+) -> None:
+    monkeypatch.setattr(urllib.request, "urlopen", answer)
+    assert find_utias() == UTIAS_CUT
+    said = capsys.readouterr().out
+    for words in (problem, "a cut that comes with percept_obs", ADDRESS, "PERCEPT_OBS_UTIAS"):
+        assert words in said
     assert not cache.exists()
 
 

@@ -299,5 +299,5 @@ def test_an_observer_that_does_not_fit_is_refused():
 
 def test_what_is_missing_is_told_with_how_to_get_it(monkeypatch):
     monkeypatch.setattr(environment, "find_spec", lambda name: None)
-    with pytest.raises(ModuleNotFoundError, match=r'xarray is missing; get it with: .*"percept-obs\[cluster\]"'):
+    with pytest.raises(ModuleNotFoundError, match=r'xarray is missing; get it with: .*"percept-obs\[course\]"'):
         ensemble(EQ35, ibo(AFFINE.measure("y1")))

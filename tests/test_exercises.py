@@ -1,12 +1,25 @@
 """Answers to exercises are judged and dots are no answer; students' copies hold no solution and no answer."""
 
+import ast
 import math
 import re
+import sys
+from types import SimpleNamespace
 
 import pytest
 
 from percept_obs import PerspectiveSystem, affine, pinhole
-from percept_obs.exercises import COPIES, choose, derive, model_answer, reach, stub, students_copy
+from percept_obs.exercises import (
+    COPIES,
+    NotInstalled,
+    choose,
+    derive,
+    model_answer,
+    needs,
+    reach,
+    stub,
+    students_copy,
+)
 from percept_obs.exercises.models import answers_in, key_of, notebooks
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
@@ -140,3 +153,16 @@ def test_an_attempt_shows_itself():
     assert choose("a", "Seen.", a=True)._repr_markdown_() == "✓ Yes, a. Seen."
     assert choose("a", "Seen.", a=False, b=True)._repr_markdown_().startswith("✗ You said a")
     assert not choose(..., "Seen.", a=True)._repr_markdown_().startswith(("✓", "✗"))
+
+
+def test_where_a_module_is_missing_only_what_installs_it_runs(monkeypatch):
+    shell = SimpleNamespace(ast_transformers=[])
+    monkeypatch.setattr("IPython.get_ipython", lambda: shell)
+    with pytest.raises(NotInstalled, match="no_such_module is missing"):
+        needs("math", "no_such_module")
+    (ended,) = shell.ast_transformers
+    for written, runs in (("1 / 0", False), ("get_ipython().run_line_magic('pip', 'install it')", True)):
+        cell = ast.parse(written)
+        assert (ended.visit(cell) is cell) is runs
+    monkeypatch.setitem(sys.modules, "no_such_module", SimpleNamespace(__spec__="installed"))
+    assert ended.visit(cell := ast.parse("1 / 0")) is cell

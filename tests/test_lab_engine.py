@@ -16,13 +16,12 @@ from lab_settings import (
     runs,
 )
 from sample_sizes import sampled
-from utias_folder import utias_folder
 
 from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.observer.texts import OWN_SWITCH, WAYS
 from percept_obs.labs.shared.printed import part
 from percept_obs.observability import windowed
-from percept_obs.recording.utias import load_utias
+from percept_obs.recording.utias import UTIAS_CUT, load_utias
 from percept_obs.system.surfaces import BehindCamera
 
 pytestmark = [pytest.mark.node, pytest.mark.slow]
@@ -154,7 +153,7 @@ def test_random_settings_agree_as_far_as_numbers_decide_them(lab, node):
 
 @pytest.mark.parametrize("outputs", [["y1", "y2"], ["y1"], ["y2"]])
 def test_a_real_track_is_followed_alike(node, outputs):
-    recording = load_utias(utias_folder())[5]
+    recording = load_utias(UTIAS_CUT)[5]
     refused = {"immersion_and_invariance", *part("observer_lab", f"forms/pinhole {'+'.join(outputs)}")["refused"]}
     lab = observer_lab(recording, outputs=outputs, observers=[name for name in ALL if name not in refused])
     (answer,) = run_in_node(node, lab, [lab.settings])

@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 from lab_settings import KEYS, whole_model
-from utias_folder import utias_folder
 
 from percept_obs import Camera, Recording, Scenario, affine, ibo, record, scenarios, track
 from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.observer.settings import PICTURES
 from percept_obs.labs.observer.texts import BY_NAME, OF_THE_PINHOLE, SIZE, SURFACES, WAYS, form_of, key_of, system_of
-from percept_obs.recording.utias import load_utias
+from percept_obs.recording.utias import UTIAS_CUT, load_utias
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import BehindCamera, pinhole
 
@@ -91,7 +90,7 @@ def test_an_own_scenario_and_a_recording_open_the_lab():
 
 
 def test_a_real_track_gives_the_run_of_its_rigid_motion():
-    recording = load_utias(utias_folder())[2]
+    recording = load_utias(UTIAS_CUT)[2]
     run = observer_lab(recording).run()["identifier_based"]
     system = PerspectiveSystem(recording.motion, recording.view)
     bare = PerspectiveSystem(type(recording.motion)("rigid", *_rigid(recording.motion)), recording.view)

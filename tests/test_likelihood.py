@@ -6,10 +6,9 @@ from examples import BOTH, ZERO
 from sample_sizes import sampled
 from trust_study import posed
 from tuning_study import RIGID, SCENARIOS, both_ways
-from utias_folder import utias_folder
 
 from percept_obs import Camera, Gaussian, ekf, ibo, record, scenarios, track
-from percept_obs.recording.utias import load_utias
+from percept_obs.recording.utias import UTIAS_CUT, load_utias
 from percept_obs.studies.likelihood import log_likelihood, tune_by_likelihood
 
 SIGMA = 0.01
@@ -83,7 +82,7 @@ def test_noise_of_the_velocities_explains_innovations_and_errors_with_noisy_pose
 
 @pytest.mark.slow
 def test_noise_of_the_velocities_explains_innovations_and_errors_on_real_tracks():
-    tracks = load_utias(utias_folder())
+    tracks = load_utias(UTIAS_CUT)
     start = {"y3": 1 / 1.8}
     nis, nees = claims(tracks[::8], tracks[1::2], lambda r, o: track(r, o, start, language="numba"), 1.0)
     assert 0.5 < nis < 2

@@ -14,12 +14,17 @@ from jupyter_harness import (
 )
 from mistakes import MISTAKES
 from notebook_exercises import trials
-from utias_folder import utias_folder
+from packages import modules, outside, required
+from sample_sizes import sampled
+from utias_cut import whole
 
 from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.recording import scenarios
+from percept_obs.recording.utias import UTIAS_CUT
 
 NAMES = sorted(path.name for path in NOTEBOOKS.glob("*.ipynb"))
+OPENED_BY = ("percept-obs", "jupyterlab", "numba")
+"""What every notebook may use; what else it needs, its first cell asks for."""
 
 
 def read(name):
@@ -79,16 +84,57 @@ def test_links_lead_to_notebooks(name):
     assert set(re.findall(r"\]\(([^):]*\.ipynb)\)", text)) <= set(NAMES)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_it_runs_and_every_control_moves(name, tmp_path, monkeypatch):
+def asked(notebook):
+    """The modules for which the first cell of code asks."""
+    calls = [node for node in ast.walk(ast.parse(code(notebook)[0])) if isinstance(node, ast.Call)]
+    return [each.value for call in calls if getattr(call.func, "id", "") == "needs" for each in call.args]
+
+
+def run(name, folder):
+    """Run a notebook with nothing but what its first cell asks for, all of which the extra "course" brings."""
     import nbformat
 
     notebook = nbformat.read(NOTEBOOKS / name, as_version=4)
-    if "load_utias" in "".join(code(notebook)):
-        monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(utias_folder()))
-    widgets = execute(notebook, tmp_path, trials(notebook, MISTAKES[name.removesuffix(".ipynb")]))
+    brought = [*OPENED_BY, *(package for module in asked(notebook) for package in modules()[module])]
+    assert required(*brought).keys() <= required("percept-obs[course]").keys()
+    mistakes = trials(notebook, MISTAKES[name.removesuffix(".ipynb")])
+    widgets = execute(notebook, folder, mistakes, outside(*brought))
     assert silent_pictures(notebook, widgets) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_it_runs_with_what_it_asks_for_and_every_control_moves(name, tmp_path, monkeypatch):
+    monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(UTIAS_CUT))
+    run(name, tmp_path)
+
+
+RECORDED = [name for name in NAMES if "load_utias" in "".join(code(read(name)))]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sampled(RECORDED[-1:], RECORDED))
+def test_it_runs_with_the_whole_recording_too(name, tmp_path, monkeypatch):
+    monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(whole()))
+    run(name, tmp_path)
+
+
+ASKING = [name for name in NAMES if asked(read(name))]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sampled(ASKING[-1:], ASKING))
+def test_a_missing_module_is_one_sentence_and_no_other_cell_runs(name, tmp_path):
+    import nbformat
+
+    notebook = nbformat.read(NOTEBOOKS / name, as_version=4)
+    for cell in notebook.cells:
+        cell.metadata.tags = ["raises-exception"]  # and yet the next ones are sent
+    execute(notebook, tmp_path, absent=asked(notebook))
+    (first, *others) = [output for cell in notebook.cells for output in cell.get("outputs", ())]
+    assert (first.output_type, first.traceback) == ("error", [first.evalue])
+    assert re.match(rf"{', '.join(asked(notebook))} is missing, .*%pip install \"percept-obs\[course\]\"", first.evalue)
+    assert [other.text for other in others] == [f"{first.evalue}\n"] * (len(code(notebook)) - 1)
 
 
 FAILING = """

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from camera_paths import poses, seen, write_stereo_mat
 from scipy.io import loadmat, savemat
-from utias_folder import utias_folder
 
 from percept_obs import Clock, PixelCamera, Poses, Recording, pinhole, read_euroc, read_tum, sphere
 from percept_obs.recording import Unlikely
 from percept_obs.recording.pose_files import write_tum
 from percept_obs.recording.stereo_mat import read_stereo_mat
 from percept_obs.recording.track_files import write_tracks
+from percept_obs.recording.utias import UTIAS_CUT
 from percept_obs.recording.worked import WORKED_CAMERA, worked_folder
 from percept_obs.site import TEXTS
 
@@ -212,7 +212,7 @@ def test_a_table_with_comments_and_spaces_is_the_plain_one(tmp_path):
 @pytest.fixture(scope="module")
 def utias_files(tmp_path_factory):
     """The real recording as poses.txt and tracks.csv, with the poses as they were recorded."""
-    folder, recorded = tmp_path_factory.mktemp("own"), read_stereo_mat(utias_folder() / "dataset3.mat")
+    folder, recorded = tmp_path_factory.mktemp("own"), read_stereo_mat(UTIAS_CUT)
     write_tum(folder / "poses.txt", recorded.poses)
     recordings = recorded.recordings("UTIAS")
     write_tracks(folder / "tracks.csv", recordings, recorded.camera)
@@ -223,7 +223,7 @@ def test_the_real_recording_rebuilt_is_the_same(utias_files):
     folder, recordings = utias_files
     motion = read_tum(folder / "poses.txt").motion()
     np.testing.assert_allclose(motion.signal.samples, recordings[0].motion.signal.samples, atol=1e-9)
-    camera = read_stereo_mat(utias_folder() / "dataset3.mat").camera
+    camera = read_stereo_mat(UTIAS_CUT).camera
     back = Recording.from_csv(
         folder / "tracks.csv", motion, camera=camera, point="point_id", depth="depth", distances=["stereo"]
     )
@@ -238,7 +238,7 @@ def test_the_real_recording_rebuilt_is_the_same(utias_files):
 def test_tracks_that_another_program_wrote_are_the_same(utias_files):
     """It names its columns in its own way, prints thousandths of a pixel, and smooths the poses in another way."""
     file, recordings = Path(__file__).with_name("data") / "utias/tracks.csv", utias_files[1]
-    camera = read_stereo_mat(utias_folder() / "dataset3.mat").camera
+    camera = read_stereo_mat(UTIAS_CUT).camera
     named = {"time": "time_s", "pixels": ("u_px", "v_px"), "point": "point_id", "depth": "depth_m_truth"}
     back = Recording.from_csv(file, recordings[0].motion, camera=camera, **named)
     assert len(back) == 44

@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 from test_utias import EKF_SETTINGS
-from utias_folder import utias_folder
 
 from percept_obs import FirstSight, luenberger, track
 from percept_obs.points import riccati
 from percept_obs.points.gramian import gramian
 from percept_obs.points.ray import ray_error, ray_turning
 from percept_obs.points.utias import OUT_OF_SIGHT, load_utias_points
-from percept_obs.recording.utias import load_utias, utias_tracks
+from percept_obs.recording.utias import UTIAS_CUT, load_utias, utias_tracks
 from percept_obs.studies.comparison import best_setting, relative_distance_errors
 
 STARTS, FORGETTING = (0.001, 0.003, 0.01), (0.0, 0.3)
@@ -23,7 +22,7 @@ CHOSEN_ON, REPORTED_ON = range(0, 12, 2), range(1, 12, 2)
 
 @lru_cache
 def landmarks():
-    return load_utias_points(utias_folder())
+    return load_utias_points(UTIAS_CUT)
 
 
 def twice_the_median_depth():
@@ -57,7 +56,7 @@ def chosen(absence):
 def test_the_landmarks_are_those_of_the_tracks():
     recording = landmarks()
     sightings = recording.sightings(OUT_OF_SIGHT)
-    tracks = load_utias(utias_folder())
+    tracks = load_utias(UTIAS_CUT)
     assert (recording.view.points, recording.view.states, len(sightings)) == (12, 36, 44)
     assert recording.seen.sum() == sum(len(track.time) for track in tracks) == 2739
     assert recording.seen.sum(axis=1).max() == 10
@@ -71,15 +70,15 @@ def test_the_landmarks_are_those_of_the_tracks():
 
 
 def test_some_landmarks_are_chosen_once_each_among_those_that_have_tracks(monkeypatch):
-    tables = utias_tracks(utias_folder())
+    tables = utias_tracks(UTIAS_CUT)
     monkeypatch.setattr("percept_obs.points.utias.utias_tracks", lambda path: tables)
-    recording = load_utias_points(utias_folder(), [17])
+    recording = load_utias_points(UTIAS_CUT, [17])
     assert recording.view.points == 1
     ends = recording.time[recording.seen.any(axis=1)][[0, -1]]
     np.testing.assert_array_equal(recording.time[[0, -1]], ends)
     for wrong in ([999], [17, 999], [17, 17], []):
         with pytest.raises(ValueError, match="name some of"):
-            load_utias_points(utias_folder(), wrong)
+            load_utias_points(UTIAS_CUT, wrong)
 
 
 @pytest.mark.slow
@@ -98,7 +97,7 @@ def test_one_state_of_all_landmarks(absence):
 @pytest.mark.slow
 def test_beside_one_filter_a_landmark():
     """The filters are as good after two seconds: the landmarks share nothing but a known motion."""
-    tracks = load_utias(utias_folder())
+    tracks = load_utias(UTIAS_CUT)
     start = {"y3": 1 / twice_the_median_depth()}
     landmark = [int(recording.source.split()[-1]) for recording in tracks]
     number = {k: n for n, k in enumerate(sorted(set(landmark)))}
@@ -136,7 +135,7 @@ def test_a_constant_p_learns_no_depth_here():
 @pytest.mark.slow
 def test_two_seconds_show_every_landmark_in_view():
     """(14) holds for each landmark by itself while it is followed; for all of them at once it fails, some are away."""
-    recording = load_utias_points(utias_folder(), [17])
+    recording = load_utias_points(UTIAS_CUT, [17])
     (sighting, *_) = recording.sightings(OUT_OF_SIGHT)
     seen = recording.without(recording.time[sighting.last + 1], np.inf)
     found = gramian(seen, 2.0)

@@ -5,6 +5,8 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from packages import required
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
@@ -62,3 +64,12 @@ def test_every_python_that_is_named_is_tried(yaml):
     tried = {one["python"] for matrix in matrices for one in matrix["include"]} | set(matrices[0]["python"])
     named = [re.fullmatch(r"Programming Language :: Python :: (3\.\d+)", each) for each in PROJECT["classifiers"]]
     assert tried == {each[1] for each in named if each}
+
+
+def test_binder_pins_all_that_the_course_brings_besides_its_own_jupyterlab():
+    lines = (ROOT / "binder/requirements.txt").read_text("utf-8").splitlines()
+    pinned = {each.name: each.specifier for each in map(Requirement, (line for line in lines if line[0] != "#"))}
+    course = required("percept-obs[course]")
+    assert course.keys() - required("jupyterlab", "ipywidgets").keys() - pinned.keys() == {"percept-obs"}
+    for name, ((version,), asked) in {name: (pin, course[name]) for name, pin in pinned.items()}.items():
+        assert version.version in asked, name

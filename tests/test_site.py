@@ -24,11 +24,10 @@ from percept_obs.exercises import COPIES
 from percept_obs.figures.base import Figure
 from percept_obs.labs.shared.saved import place_of
 from percept_obs.papers import NAMED
-from percept_obs.recording.utias import DatasetUnavailable
 from percept_obs.site.extension import _let_keys_scroll, mathml
 from percept_obs.site.front_ends import TRIED
 from percept_obs.site.named import named
-from percept_obs.site.notebooks import drawing, needing_the_recording, run_all
+from percept_obs.site.notebooks import drawing
 from percept_obs.site.pages import ledger_addresses, reference
 from percept_obs.site.slides import NEXT, slides_of
 
@@ -294,25 +293,6 @@ def test_only_teachers_get_the_exam():
         assert ("exam.md" in names) is exam
         assert ("exam.md" in named([], NAMED, exam)["exam"]) is exam
     assert "<summary>Solution" not in "".join(text for _, text in site._texts(False))
-
-
-@pytest.mark.slow
-def test_what_misses_its_recording_is_left_as_it_is_and_says_so(monkeypatch):
-    def missing():
-        raise DatasetUnavailable("no network")
-
-    code = {"cell_type": "code", "id": "c", "metadata": {}, "outputs": [], "execution_count": None}
-    title = {"cell_type": "markdown", "id": "t", "metadata": {}, "source": "# A title"}
-    whole = {"nbformat": 4, "nbformat_minor": 5, "metadata": {}}
-    wanting = {**whole, "cells": [title, code | {"source": "from percept_obs.recording.utias import load_utias"}]}
-    plain = {**whole, "cells": [title]}
-    monkeypatch.setattr("percept_obs.site.notebooks.find_utias", missing)
-    assert needing_the_recording({"03": wanting, "00": plain}) == {"03"}
-    assert needing_the_recording({"00": plain}) == frozenset()
-    ((name, written),) = run_all({"03": wanting}, 1, frozenset({"03"}))
-    assert name == "03"
-    assert written.cells[0].source == "# A title"
-    assert "no cell of this page was run" in written.cells[1].source
 
 
 def test_an_address_of_its_own_for_every_equation():

@@ -7,12 +7,11 @@ import pytest
 from distrust_study import FORM, RIGHT, WRONG, drawn, flagged, judged
 from sample_sizes import sampled
 from trust_study import POSES, blindly, posed, shares, trusted_with
-from utias_folder import utias_folder
 
 from percept_obs import Camera, Gaussian, Scenario, ekf, pinhole, record, rigid, track
 from percept_obs.figures import trust
 from percept_obs.observers import OBSERVERS
-from percept_obs.recording.utias import load_utias
+from percept_obs.recording.utias import UTIAS_CUT, load_utias
 from percept_obs.studies.trust import trust_over_time
 
 STILL = (0.0, 0.0, 0.0)
@@ -111,7 +110,7 @@ def test_with_errors_of_the_poses_few_wrong_ones_are_trusted_and_most_right_ones
 def test_on_real_tracks_few_wrong_ones_are_trusted():
     start = {"y3": 1 / 1.8}
     observer = ekf(FORM, noise_variance=7e-6, turning_noise=3.5e-4, measured_variance=1e-4, hidden_variance=1)
-    tracks = load_utias(utias_folder())[:: sampled(4, 1)]
+    tracks = load_utias(UTIAS_CUT)[:: sampled(4, 1)]
     parts = [each.between(each.time[0], each.time[0] + length) for each in tracks for length in (1, 2, 3)]
     far_off, off, _ = shares([blindly(track(part, observer, start, language="numba")) for part in parts])
     assert far_off <= 0.01

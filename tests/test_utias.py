@@ -6,11 +6,10 @@ from itertools import product
 
 import numpy as np
 import pytest
-from utias_folder import utias_folder
 
 from percept_obs import PerspectiveSystem, ekf, ibo, pinhole, rigid, track
 from percept_obs.observers import OBSERVERS, immersion_and_invariance
-from percept_obs.recording.utias import load_utias
+from percept_obs.recording.utias import UTIAS_CUT, load_utias
 from percept_obs.studies.comparison import best_setting, relative_distance_errors
 from percept_obs.studies.least_squares import moving_window_least_squares
 from percept_obs.studies.tuning import choose_and_report, side_by_side
@@ -27,7 +26,7 @@ EKF_SETTINGS = [
 
 @lru_cache
 def recordings():
-    return load_utias(utias_folder())
+    return load_utias(UTIAS_CUT)
 
 
 def twice_the_median_depth():

@@ -9,7 +9,7 @@ runs an ensemble, or says without it how to get it; imports every module; or run
 """
 
 import _thread
-import importlib.metadata
+import importlib
 import json
 import multiprocessing.process
 import os
@@ -23,52 +23,22 @@ import warnings
 from pathlib import Path
 
 import matplotlib
-from packaging.requirements import Requirement
-from packaging.utils import canonicalize_name
+from packages import hide, outside
 
-IN_LITE = ["filterpy", "xarray"]
+IN_LITE = ("filterpy", "xarray")
 """Packages that the notebooks of the JupyterLite get besides."""
 
-
-def required(name="percept-obs", extra=""):
-    """Names of the packages that one requires in a browser, and of those that they require."""
-    found = {}
-    platform = {"sys_platform": "emscripten", "platform_system": "Emscripten", "extra": extra}
-
-    def add(name):
-        for text in importlib.metadata.requires(name) or ():
-            wanted = Requirement(text)
-            if (wanted.marker is None or wanted.marker.evaluate(platform)) and wanted.name not in found:
-                found[wanted.name] = wanted.specifier
-                add(wanted.name)
-
-    add(name)
-    return found
-
-
-class Among:
-    """A finder of modules that knows only some packages."""
-
-    def __init__(self, finder, absent):
-        self.finder, self.absent = finder, absent
-
-    def __getattr__(self, name):
-        return getattr(self.finder, name)
-
-    def find_spec(self, name, path=None, target=None):
-        return None if name.partition(".")[0] in self.absent else self.finder.find_spec(name, path, target)
+PLATFORM = {"sys_platform": "emscripten", "platform_system": "Emscripten"}
+"""A browser, as requirements call it."""
 
 
 def refuse(*args, **kwargs):
     raise RuntimeError("can't start what a browser does not have")
 
 
-def as_in_a_browser(extra="", more=()):
-    """Take away what a browser's Python does not have; `more` are packages that are there all the same."""
-    there = {canonicalize_name(name) for name in [*required(extra=extra), "percept-obs", *more]}
-    packages = importlib.metadata.packages_distributions().items()
-    absent = {module for module, names in packages if not {canonicalize_name(name) for name in names} & there}
-    sys.meta_path[:] = [Among(finder, absent) for finder in sys.meta_path]
+def as_in_a_browser(*asked):
+    """Take away what a browser's Python does not have, and packages that no requirement brings."""
+    hide(outside(*asked, **PLATFORM))
     threading.Thread.start = _thread.start_new_thread = refuse
     multiprocessing.process.BaseProcess.start = subprocess.Popen.__init__ = os.fork = os.system = refuse
     socket.socket.connect = refuse
@@ -142,9 +112,10 @@ if __name__ == "__main__":
     matplotlib.use("Agg")
     what, extra = Path(sys.argv[1]), "".join(sys.argv[2:])
     if what.suffix == ".ipynb" or what.name == "modules":
-        as_in_a_browser("data", IN_LITE)
+        as_in_a_browser("percept-obs[data]", *IN_LITE)
         run(what) if what.suffix else import_all()
     else:
-        as_in_a_browser(extra, ["xarray"] if extra else [])  # which a browser's Python has, for who asks for ensembles
+        # A browser's Python has xarray, for who asks for ensembles.
+        as_in_a_browser(*([f"percept-obs[{extra}]", "xarray"] if extra else ["percept-obs"]))
         missing = work_on_data(*work(what))
         assert missing == ("" if extra else 'pandas is missing; get it with: python -m pip install "percept-obs[data]"')

@@ -17,7 +17,7 @@ CUT = "{}\n# BEGIN SOLUTION NO PROMPT\n{}\n# END SOLUTION"
 TEST = "assert reply.right, reply"
 
 CONFIG = """# ASSIGNMENT CONFIG
-requirements: ["percept-obs[cluster,filters]"]
+requirements: ["percept-obs[course]"]
 export_cell:
   pdf: false"""
 """Otter's settings: what the notebooks need, and no PDF of an answer, which needs LaTeX."""

@@ -27,33 +27,30 @@ UTIAS_ADDRESS = (
 )
 UTIAS_SHA256 = "ac7f9d90199d376875ef13a472d94b728e84f38ce70b7c7ed145060c895e02e5"
 UTIAS_FILE = "dataset3.mat"
+UTIAS_CUT = Path(__file__).parent / "utias_cut" / "dataset3_cut.mat"
+"""Cut of the recording that comes with this package: all poses, and all tracks of 3 s or more."""
 UTIAS_VARIABLE = "PERCEPT_OBS_UTIAS"
 
 PIXEL_SIGMA = 4.0  # pixels to which a measured one agrees with the poses
 
 
-class DatasetUnavailable(ConnectionError):
-    """Raised when the recording is not on this machine and could not be fetched."""
-
-
 @checked
 def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
-    """Return the recording's file on this machine, its SHA-256 checked; it is fetched on first use.
+    """Return the recording's file on this machine, its SHA-256 checked; it is fetched on first use, or a cut is taken.
 
     Parameters
     ----------
     path : str or path, optional
         The file dataset3.mat or a folder that holds it; the environment variable PERCEPT_OBS_UTIAS when left out.
-        Without either the file is fetched once from the laboratory's repository and kept in this user's cache.
+        Without either the file is fetched once from the laboratory's repository and kept in this user's cache.  Where
+        that fails, it is `UTIAS_CUT`, which has all that `load_utias` reads, and a printed sentence says so.
 
     Raises
     ------
     FileNotFoundError
         If the path or the variable names nothing, or a folder without dataset3.mat.
     ValueError
-        If the file there is not the recording, byte for byte.
-    DatasetUnavailable
-        If the file has to be fetched and cannot be.
+        If the file there is neither the recording nor the cut, byte for byte.
 
     See Also
     --------
@@ -141,7 +138,7 @@ def _checked(place: Path, origin: str) -> Path:
             f"or name nothing and it is fetched from {UTIAS_ADDRESS}"
         )
     found = _digest(file.read_bytes())
-    if found != UTIAS_SHA256:
+    if found not in (UTIAS_SHA256, _digest(UTIAS_CUT.read_bytes())):
         raise ValueError(
             f"{origin} names '{file}', which is another file or a damaged one: its SHA-256 is {found}, "
             f"expected {UTIAS_SHA256}; download it again from {UTIAS_ADDRESS}"
@@ -150,14 +147,14 @@ def _checked(place: Path, origin: str) -> Path:
 
 
 def _fetched() -> Path:
-    """Return the file in the system's cache, fetched if it is not there."""
+    """Return the file in the system's cache, fetched if it is not there, or the cut if it cannot be."""
     from platformdirs import user_cache_path
 
     file = user_cache_path("percept_obs") / UTIAS_FILE
     if file.is_file() and _digest(file.read_bytes()) == UTIAS_SHA256:
         return file
     try:
-        with urllib.request.urlopen(UTIAS_ADDRESS, timeout=60) as answer:
+        with urllib.request.urlopen(UTIAS_ADDRESS, timeout=5) as answer:  # seconds, for each address of the server
             content = answer.read()
         found = _digest(content)
         if found != UTIAS_SHA256:
@@ -165,11 +162,12 @@ def _fetched() -> Path:
         file.parent.mkdir(parents=True, exist_ok=True)
         write_whole(file, content)
     except OSError as error:
-        raise DatasetUnavailable(
-            f"the UTIAS recording could not be fetched ({error}); is there no network?  Download "
-            f"{UTIAS_ADDRESS} by hand and give its place as path= or in the environment variable "
-            f"{UTIAS_VARIABLE}"
-        ) from error
+        print(
+            f"The UTIAS recording could not be fetched ({error}), so a cut that comes with percept_obs is read; it has "
+            f"the same tracks. To have the whole, download {UTIAS_ADDRESS} and name its folder in the environment "
+            f"variable {UTIAS_VARIABLE}."
+        )
+        return UTIAS_CUT
     return file
 
 

@@ -19,14 +19,7 @@ from percept_obs.site import front_ends, lite, slides
 from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
 from percept_obs.site.front import first_lab, front
 from percept_obs.site.named import named
-from percept_obs.site.notebooks import (
-    NO_RECORDING,
-    SiteFault,
-    labs_of,
-    needing_the_recording,
-    run_all,
-    without_widgets,
-)
+from percept_obs.site.notebooks import SiteFault, labs_of, run_all, without_widgets
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
 
 __all__ = ["NEEDS", "SiteFault", "build"]
@@ -145,11 +138,8 @@ def _notebooks(
     import nbformat
 
     states: dict[bytes, Mapping[str, Any]] = {lab["texts"]: lab}
-    missing = needing_the_recording(notebooks)
-    if missing:
-        tell(f"{NO_RECORDING} These stand on the site without their results: {', '.join(sorted(missing))}")
-    for name, notebook in run_all(notebooks, parallel, missing):
-        tell(f"{'wrote' if name in missing else 'ran'} {name}")
+    for name, notebook in run_all(notebooks, parallel):
+        tell(f"ran {name}")
         states |= {state["texts"]: state for state in labs_of(notebook).values()}
         _write(shown / name, nbformat.writes(without_widgets(slides.slides_of(notebook), SCRIPTS)))
         _write(source / "notebooks" / name, nbformat.writes(without_widgets(notebook, SCRIPTS)))

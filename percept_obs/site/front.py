@@ -96,7 +96,7 @@ def front(state: Mapping[str, Any], notebooks: Mapping[str, Mapping[str, Any]], 
         f"<h2>Learn</h2>{_course(notebooks)}{_links(LEARN)}",
         f'<div class="front-doors"><section><h2>Teach</h2>{_links(TEACH)}</section>',
         f"<section><h2>Look things up</h2>{_verdicts(ledgers)}{_links(LOOK_UP)}</section></div>",
-        '<h2>Install</h2><pre>python3 -m pip install -e ".[fast,lab]"\npercept-obs lab</pre>',
+        '<h2>Install</h2><pre>python3 -m pip install -e ".[course]"\npercept-obs lab</pre>',
     ]
     return "\n\n".join([HEADER, "```{raw} html\n" + "\n".join(doors) + "\n```", tree, ""])
 

@@ -24,7 +24,7 @@ RULES = {
 """Rules by which a lab works where nobody has tried it; tests hold what they say of the labs."""
 
 INSTALL = {
-    "JupyterLab": 'python -m pip install "percept-obs[lab]"',
+    "JupyterLab": 'python -m pip install "percept-obs[course]"',
     "Notebook 7": 'python -m pip install "notebook>=7"',
     "Voila": "python -m pip install voila",
     "marimo": "python -m pip install marimo",

@@ -33,8 +33,7 @@ PLACES = {"app": "lite/lab/index.html", "servers": "cdn.jsdelivr.net, pypi.org"}
 NOTE = f"""*Python runs in your browser here.  The next cell gets it ready: packages such as numpy come from public
 servers ({PLACES["servers"]}), which takes a while the first time.  Nothing is compiled, so long runs take longer than
 in a Python of your own.  A notebook with the UTIAS recording fetches it from githubusercontent.com; where that fails,
-its first cell says so, and the cells that need it do not run.  What you change stays in this browser: download what you
-want to keep.*"""
+it reads the package's cut and says so.  What you change stays in this browser: download what you want to keep.*"""
 
 NO_FILMS = """
 

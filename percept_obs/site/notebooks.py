@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 
 from percept_obs.figures.base import Figure
 from percept_obs.labs.shared.saved import ENDED, SHOWN, place_of
-from percept_obs.recording.utias import UTIAS_VARIABLE, DatasetUnavailable, find_utias
 from percept_obs.site.extension import mathml
 
 if TYPE_CHECKING:
@@ -36,10 +35,6 @@ class SiteFault(RuntimeError):
     """Raised when a page cannot be built, or would have a fault."""
 
 
-NO_RECORDING = (
-    "The recording dataset3.mat is not on the machine that wrote this page, and there was no network to fetch it; "
-    f"put it into a folder, and name that in {UTIAS_VARIABLE}."
-)
 NEEDS_PYTHON = "This control needs Python: run the notebook to move it."
 PREPARE = "from percept_obs.site.notebooks import draw_for_pages\ndraw_for_pages()"
 
@@ -68,42 +63,10 @@ def drawing(figure: Figure) -> str:
     return text.replace("<svg", f'<svg role="img" aria-label="{escape(figure.text)}" style="{style}"', 1)
 
 
-def needing_the_recording(notebooks: Mapping[str, Mapping[str, Any]]) -> frozenset[str]:
-    """Return the names of notebooks that read a recording which is not here and cannot be fetched."""
-    names = {name for name, notebook in notebooks.items() if any(map(_reads_it, notebook["cells"]))}
-    try:
-        if names:
-            find_utias()
-    except DatasetUnavailable:
-        return frozenset(names)
-    return frozenset()
-
-
-def _reads_it(cell: Mapping[str, Any]) -> bool:
-    return cell["cell_type"] == "code" and "load_utias" in "".join(cell["source"])
-
-
-def run_all(
-    notebooks: Mapping[str, Mapping[str, Any]], parallel: int, missing: frozenset[str] = frozenset()
-) -> Iterator[tuple[str, nbformat.NotebookNode]]:
-    """Run notebooks, some at once, and yield each with its name in their order; SiteFault if a cell fails.
-
-    Those that miss their data are not run, and say so below their title.
-    """
-
-    def made(name: str) -> nbformat.NotebookNode:
-        return _unrun(notebooks[name]) if name in missing else _run(name, notebooks[name])
-
+def run_all(notebooks: Mapping[str, Mapping[str, Any]], parallel: int) -> Iterator[tuple[str, nbformat.NotebookNode]]:
+    """Run notebooks, some at once, and yield each with its name in their order; SiteFault if a cell fails."""
     with ThreadPoolExecutor(parallel) as several:
-        yield from zip(notebooks, several.map(made, notebooks), strict=True)
-
-
-def _unrun(notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
-    import nbformat
-
-    whole = nbformat.reads(json.dumps(notebook), as_version=4)
-    whole.cells.insert(1, nbformat.v4.new_markdown_cell(f"*{NO_RECORDING} So no cell of this page was run.*"))
-    return whole
+        yield from zip(notebooks, several.map(_run, notebooks, notebooks.values()), strict=True)
 
 
 def _run(name: str, notebook: Mapping[str, Any]) -> nbformat.NotebookNode:

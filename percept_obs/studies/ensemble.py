@@ -151,7 +151,7 @@ def ensemble(
     >>> round(found.settling_time.sel(gain=10.0, seed=0).item(), 2)
     1.91
     """
-    needed("cluster", "xarray", *(("zarr",) if store is not None else ()))
+    needed(*(("course", "xarray") if store is None else ("cluster", "xarray", "zarr")))
     camera, motion = camera or scenario.camera, believed or scenario.motion
     duration = scenario.duration if duration is None else float(duration)
     limit(float(seeds) if isinstance(seeds, int | np.integer) else len(seeds), "seeds", "take fewer", MOST_RUNS)

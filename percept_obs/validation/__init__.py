@@ -8,6 +8,7 @@ from percept_obs.validation.arguments import refuse_kind as refuse_kind
 from percept_obs.validation.arguments import set_fields as set_fields
 from percept_obs.validation.environment import bar as bar
 from percept_obs.validation.environment import load_pandas as load_pandas
+from percept_obs.validation.environment import missing as missing
 from percept_obs.validation.environment import needed as needed
 from percept_obs.validation.environment import warn as warn
 from percept_obs.validation.environment import workers as workers

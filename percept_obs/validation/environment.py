@@ -13,12 +13,16 @@ from typing import Any
 PACKAGE = __name__.partition(".")[0]
 
 
+def missing(*modules: str) -> list[str]:
+    """Names of those modules that are not installed."""
+    return [module for module in modules if find_spec(module) is None]
+
+
 def needed(extra: str, *modules: str) -> None:
     """Raise ModuleNotFoundError if optional modules are missing, and say which extra of this package brings them."""
-    missing = [module for module in modules if find_spec(module) is None]
-    if missing:
+    if lacking := missing(*modules):
         raise ModuleNotFoundError(
-            f'{", ".join(missing)} is missing; get it with: python -m pip install "percept-obs[{extra}]"'
+            f'{", ".join(lacking)} is missing; get it with: python -m pip install "percept-obs[{extra}]"'
         )
 
 
