@@ -40,6 +40,7 @@ NO_RECORDING = (
     "The recording dataset3.mat is not on the machine that wrote this page, and there was no network to fetch it; "
     f"put it into a folder, and name that in {UTIAS_VARIABLE}."
 )
+NOT_RUN = "*This page was written without running its notebook: it shows no results, no figures and no labs.*"
 NEEDS_PYTHON = "This control needs Python: run the notebook to move it."
 PREPARE = "from percept_obs.site.notebooks import draw_for_pages\ndraw_for_pages()"
 
@@ -103,6 +104,15 @@ def _unrun(notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
 
     whole = nbformat.reads(json.dumps(notebook), as_version=4)
     whole.cells.insert(1, nbformat.v4.new_markdown_cell(f"*{NO_RECORDING} So no cell of this page was run.*"))
+    return whole
+
+
+def not_run(notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
+    """Return a notebook that says below its title why it shows no results."""
+    import nbformat
+
+    whole = nbformat.reads(json.dumps(notebook), as_version=4)
+    whole.cells.insert(1, nbformat.v4.new_markdown_cell(NOT_RUN))
     return whole
 
 
