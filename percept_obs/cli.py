@@ -99,8 +99,8 @@ def site(options: argparse.Namespace) -> int:
         needed("site", *NEEDS)
         if options.python:
             needed("lite", *lite.NEEDS)
-        exam = options.readers == "teachers"
-        build(options.directory, copies, exam=exam, address=options.address, python=options.python)
+        exam, run = options.readers == "teachers", () if options.without_running else None
+        build(options.directory, copies, exam=exam, address=options.address, python=options.python, run=run)
     except (SiteFault, OSError, ModuleNotFoundError) as error:
         raise _Mistake(str(error), 1) from None
     return 0
@@ -285,6 +285,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add(
         "--python", action="store_true", help="add JupyterLite, in which a reader runs the notebooks without installing"
     )
+    fast = (
+        "run no notebook and judge no equation, to look at all pages within a minute; they say that results are missing"
+    )
+    add("--without-running", action="store_true", help=fast)
 
     add = command(check, "judge the papers' equations")
     add("places", nargs="*", metavar="PLACE", help='such as "(38)", 38 or "figure 3" (default: all)')

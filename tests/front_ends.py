@@ -21,6 +21,11 @@ SETTLED = """(count) => {
     return labs.length === count && labs.every((lab) => lab.settled && !lab.pending
         && (!lab.widget.save_changes || lab.link.waitingFor === null));
 }"""
+ALL_DRAWN = """() => {
+    const labs = [...(window.perceptObsLabs ?? [])];
+    return document.querySelectorAll("[data-percept-obs]").length === labs.length
+        && labs.every((lab) => lab.shown && lab.settled !== false && !lab.pending);
+}"""
 ORDER = """() => {
     const tops = [...window.perceptObsLabs].map((lab) => lab.view.root.getBoundingClientRect().top);
     return tops.map((_, k) => k).sort((a, b) => tops[a] - tops[b]);

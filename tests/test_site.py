@@ -4,7 +4,9 @@ import json
 import re
 import subprocess
 import warnings
+from functools import cache
 from html.parser import HTMLParser
+from os.path import normpath
 from pathlib import Path
 from urllib.parse import unquote, urldefrag
 
@@ -12,27 +14,30 @@ import matplotlib.figure
 import nbformat
 import pytest
 from conftest import missing
-from front_ends import SETTLED, TRIALS, Shown
+from front_ends import ALL_DRAWN, SETTLED, TRIALS, Shown
 from jupyter_harness import NOTEBOOKS
 from lab_alone import DRAWN
 from lab_settings import FRONT
 from sample_sizes import sampled
+from widths import WIDTHS, assert_fits
 
 import percept_obs
 from percept_obs import cli, site
 from percept_obs.exercises import COPIES
+from percept_obs.exercises.models import notebooks
 from percept_obs.figures.base import Figure
 from percept_obs.labs.shared.saved import place_of
 from percept_obs.papers import NAMED
 from percept_obs.site.extension import _let_keys_scroll, mathml
 from percept_obs.site.front_ends import TRIED
 from percept_obs.site.named import named
-from percept_obs.site.notebooks import drawing
-from percept_obs.site.pages import ledger_addresses, reference
+from percept_obs.site.notebooks import NOT_RUN, drawing
+from percept_obs.site.pages import ledger_addresses, reference, slug
 from percept_obs.site.slides import NEXT, slides_of
 
 NOTEBOOK = "00_start.ipynb"
 PAPER = "DE_LUCA2008"
+WITH_RESULTS = {Path(NOTEBOOK).stem + ".html", slug(PAPER)}
 ADDRESS = "https://example.org/course"
 
 
@@ -52,20 +57,23 @@ class Links(HTMLParser):
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory):
-    """A site with one notebook and one paper; with ALL_SAMPLES, the whole one."""
+    """The whole site, of which one notebook is run and one paper judged; with ALL_SAMPLES all are."""
     target = tmp_path_factory.mktemp("site")
-    names = sampled([NOTEBOOK], sorted(path.name for path in NOTEBOOKS.glob("*.ipynb")))
-    copies = {name: COPIES["teachers"](json.loads((NOTEBOOKS / name).read_bytes())) for name in names}
+    copies = {name: COPIES["teachers"](notebook) for name, notebook in notebooks().items()}
     _add_a_second_lab(copies[NOTEBOOK])
-    if names == [NOTEBOOK]:  # its links to the others lead nowhere
-        copies = {
-            name: json.loads(re.sub(r"\]\((?!00)[^)]*\.ipynb\)", "]", json.dumps(c))) for name, c in copies.items()
-        }
-    with warnings.catch_warnings():
+    run = sampled({NOTEBOOK, PAPER}, None)
+    with warnings.catch_warnings(), pytest.MonkeyPatch.context() as patch:
         warnings.simplefilter("ignore")  # the generator's own
-        ledgers = sampled({PAPER: NAMED[PAPER]}, NAMED)
-        site.build(target, copies, ledgers, tell=lambda text: None, exam=True, address=ADDRESS, python=True)
+        if run:  # tests of its own build it
+            patch.setattr(site.lite, "write_lite", _write_no_lite)
+        site.build(target, copies, tell=lambda text: None, exam=True, address=ADDRESS, python=True, run=run)
     return target
+
+
+def _write_no_lite(target, notebooks):
+    page = target / site.lite.PLACES["app"]
+    page.parent.mkdir(parents=True)
+    page.touch()
 
 
 def written(pages):
@@ -80,28 +88,40 @@ def _add_a_second_lab(notebook):
     )
 
 
+def kind(page):
+    """What a page, a path below the site, is like: each text is a kind, and so is what has results."""
+    folder, *rest = page.parts
+    return page.stem if not rest else (folder, len(rest), page.stem == "index", bool({*page.parts} & WITH_RESULTS))
+
+
 def to_look_at(pages):
     """A page of each kind; with ALL_SAMPLES all of them, which takes a while."""
     found = written(pages)
-    return sampled(list({path.parent: path for path in reversed(found)}.values()), found)
+    return sampled(list({kind(path.relative_to(pages)): path for path in reversed(found)}.values()), found)
 
 
 @pytest.mark.slow
 def test_every_link_leads_somewhere(pages):
     found = {path: Links(path) for path in written(pages)}
-    assert len(found) > 25
+    assert (
+        {path.stem for path in found if path.parent.name == "slides"}
+        == {path.stem for path in found if path.parent.name == "notebooks"}
+        == {"index", *(path.stem for path in NOTEBOOKS.glob("*.ipynb"))}
+    )
+    assert len(found) > sum(len(ledger.entries) for ledger in NAMED.values())
     assert (
         f"../lite/lab/index.html?path={NOTEBOOK}"
         in found[(pages / "notebooks" / NOTEBOOK).with_suffix(".html")].targets
     )
+    there = cache(Path.exists)  # pages of a folder share most links
     for path, links in found.items():
         for target in links.targets:
             address, place = urldefrag(target)
             if re.match(r"[a-z]+:", target):
                 assert not re.search(r"\.(js|css|png|svg|woff2?)$", address), f"{path} loads {target}"
                 continue
-            to = (path.parent / unquote(address).split("?")[0]).resolve() if address else path
-            assert to.exists(), f"{path} leads to {target}"
+            to = Path(normpath(path.parent / unquote(address).split("?")[0])) if address else path
+            assert there(to), f"{path} leads to {target}"
             if place and to in found:
                 assert unquote(place) in found[to].places, f"{path} leads to {target}"
 
@@ -133,6 +153,31 @@ def test_every_page_opens_without_an_error_or_a_request(pages, browser):
             assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == [], path
     assert labs
     page.close()
+
+
+@pytest.mark.slow
+@pytest.mark.browser
+def test_every_kind_of_page_fits_its_window_and_all_that_can_be_pressed_can_be_reached(pages, browser):
+    page, looked = browser.new_page(offline=True), 0
+    for path in to_look_at(pages):
+        page.goto(path.as_uri())
+        page.wait_for_function(ALL_DRAWN)
+        looked += assert_fits(page, path)
+    print(f"{len(to_look_at(pages))} of {len(written(pages))} pages, {len(WIDTHS)} widths: {looked} controls reached")
+    page.close()
+
+
+@pytest.mark.slow
+def test_what_was_not_run_says_so_and_has_a_title_and_slides(pages):
+    for path in (pages / "notebooks").glob("[0-9]*.html"):
+        not_run = path.stem != Path(NOTEBOOK).stem and sampled(True, False)
+        text = path.read_text("utf-8")
+        assert (NOT_RUN.strip("*") in text) is not_run
+        assert ("data-percept-obs" in text) is not not_run or not sampled(True, False)
+        slides = (pages / "slides" / path.name).read_text("utf-8")
+        title = re.search(r"<h1>(.*?)<a", text)[1]
+        assert f"<h1>{title}" in slides
+        assert slides.count("<section") > 5
 
 
 @pytest.mark.slow

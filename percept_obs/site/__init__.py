@@ -8,8 +8,9 @@ from __future__ import annotations
 import io
 import shutil
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from importlib import metadata, resources
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +18,10 @@ from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED, Ledger
 from percept_obs.site import front_ends, lite, slides
 from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
+from percept_obs.site.faults import faults_of
 from percept_obs.site.front import first_lab, front
 from percept_obs.site.named import named
-from percept_obs.site.notebooks import SiteFault, labs_of, run_all, without_widgets
+from percept_obs.site.notebooks import SiteFault, labs_of, not_run, run_all, without_widgets
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
 
 __all__ = ["NEEDS", "SiteFault", "build"]
@@ -64,6 +66,7 @@ def build(
     exam: bool = False,
     address: str = "",
     python: bool = False,
+    run: Collection[str] | None = None,
 ) -> None:
     """Build the site.
 
@@ -76,7 +79,7 @@ def build(
     ledgers : mapping of str to Ledger, optional
         The papers; all, when left out.
     parallel : int
-        Number of notebooks that run at once.
+        Number of processes: notebooks that run at once, then pages that are written at once.
     tell : function of str, optional
         Called with each message about the progress; `print` when left out.
     exam : bool
@@ -87,21 +90,30 @@ def build(
         folder above, where the others stand.
     python : bool
         Whether JupyterLite stands beside the pages, with the notebooks and a Python that runs in the reader's browser.
+    run : collection of str, optional
+        Names of the notebooks that are run and of the papers that are judged; all, when left out.  The pages of the
+        others have no results, and say so.
 
     Raises
     ------
     SiteFault
         If a notebook does not run, a page has a fault such as a link that leads nowhere, or JupyterLite cannot be
-        built.
+        built.  What can be known without running is asked before any work starts, and told at once.
     """
     address = address and address.rstrip("/") + "/"
+    run = {*notebooks, *ledgers} if run is None else {*run}
+    names = named(notebooks, ledgers, exam)
+    texts = {path: text for path, text in _texts(exam) if path.endswith(".md")}
+    if found := [*faults_of(notebooks, texts, names, run)]:
+        raise SiteFault("\n".join(("the site has faults:", *found)))
     with tempfile.TemporaryDirectory() as folder:
         source, shown = Path(folder) / "site", Path(folder) / "slides"
         lab = first_lab()
-        _notebooks(source, shown, notebooks, parallel, lab, tell)
-        tell("judging the papers' equations")
+        _notebooks(source, shown, notebooks, run, parallel, lab, tell)
+        if judged := run & {*ledgers}:
+            tell("judging the papers' equations")
         for path, text in [
-            *ledger_pages(ledgers),
+            *ledger_pages(ledgers, judged),
             *reference(),
             *_texts(exam),
             ("index.md", front(lab, notebooks, ledgers)),
@@ -113,7 +125,7 @@ def build(
             shutil.copytree(pictures, source / "pictures")
         context = {"versions": above_versions(address), "python": lite.PLACES if python else {}}
         settings = {"html_baseurl": address, "html_context": context}
-        _generate(source, target, {"myst_substitutions": named(notebooks, ledgers, exam), **settings})
+        _generate(source, target, {"myst_substitutions": names, **settings}, parallel=parallel)
         slides.prepare(shown, (TEXTS / "slides.css").read_text("utf-8"))
         extensions = [*SETTINGS["extensions"], "sphinx_revealjs"]
         _generate(shown, target / "slides", {**slides.SETTINGS, "extensions": extensions}, "revealjs")
@@ -130,16 +142,19 @@ def _notebooks(
     source: Path,
     shown: Path,
     notebooks: Mapping[str, Mapping[str, Any]],
+    run: set[str],
     parallel: int,
     lab: Mapping[str, Any],
     tell: Callable[[str], object],
 ) -> None:
-    """Run the notebooks, and write them and their slides, with the scripts of their labs and of the first page's."""
+    """Run notebooks, and write all and their slides, with the scripts of their labs and of the first page's."""
     import nbformat
 
     states: dict[bytes, Mapping[str, Any]] = {lab["texts"]: lab}
-    for name, notebook in run_all(notebooks, parallel):
-        tell(f"ran {name}")
+    wanted = {name: notebook for name, notebook in notebooks.items() if name in run}
+    kept = ((name, not_run(notebook)) for name, notebook in notebooks.items() if name not in run)
+    for name, notebook in chain(run_all(wanted, parallel), kept):
+        tell(f"{'ran' if name in run else 'wrote'} {name}")
         states |= {state["texts"]: state for state in labs_of(notebook).values()}
         _write(shown / name, nbformat.writes(without_widgets(slides.slides_of(notebook), SCRIPTS)))
         _write(source / "notebooks" / name, nbformat.writes(without_widgets(notebook, SCRIPTS)))
@@ -163,13 +178,13 @@ def _write(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
-def _generate(source: Path, target: Path, names: Mapping[str, Any], builder: str = "html") -> None:
+def _generate(source: Path, target: Path, names: Mapping[str, Any], builder: str = "html", parallel: int = 1) -> None:
     from sphinx.application import Sphinx
     from sphinx.util.docutils import docutils_namespace
 
-    faults, settings = io.StringIO(), {**SETTINGS, **names}
+    faults, settings, trees = io.StringIO(), {**SETTINGS, **names}, source / ".doctrees"
     with docutils_namespace():
-        app = Sphinx(source, None, target, source / ".doctrees", builder, settings, None, faults, freshenv=True)
+        app = Sphinx(source, None, target, trees, builder, settings, None, faults, True, parallel=parallel)
         app.build(force_all=True)
     if faults.getvalue():
         raise SiteFault(f"the site has faults:\n{faults.getvalue()}")

@@ -20,8 +20,9 @@ LONGEST = 160
 def describe(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
     """Give a page a description, its first paragraph, and what a card of it shows."""
     paragraphs = [] if doctree is None else [node.astext() for node in doctree.findall() if node.tagname == "paragraph"]
-    text = ABOUT if page == "index" else next((p for p in paragraphs if len(p.split()) > 4), ABOUT)
     title = re.sub("<[^>]*>", "", context.get("title", "")) or TITLE
+    first = (text for text in paragraphs if len(text.split()) > 4 and " · " not in text)  # which are links alone
+    text = ABOUT if page == "index" else next(first, f"{title}. {ABOUT}")
     tags = {"og:title": title, "og:description": short(text), "og:type": "website", "og:site_name": "percept_obs"}
     address = app.config.html_baseurl
     if address:

@@ -35,6 +35,7 @@ class SiteFault(RuntimeError):
     """Raised when a page cannot be built, or would have a fault."""
 
 
+NOT_RUN = "*This page was written without running its notebook: it shows no results, no figures and no labs.*"
 NEEDS_PYTHON = "This control needs Python: run the notebook to move it."
 PREPARE = "from percept_obs.site.notebooks import draw_for_pages\ndraw_for_pages()"
 
@@ -67,6 +68,15 @@ def run_all(notebooks: Mapping[str, Mapping[str, Any]], parallel: int) -> Iterat
     """Run notebooks, some at once, and yield each with its name in their order; SiteFault if a cell fails."""
     with ThreadPoolExecutor(parallel) as several:
         yield from zip(notebooks, several.map(_run, notebooks, notebooks.values()), strict=True)
+
+
+def not_run(notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
+    """Return a notebook that says below its title why it shows no results."""
+    import nbformat
+
+    whole = nbformat.reads(json.dumps(notebook), as_version=4)
+    whole.cells.insert(1, nbformat.v4.new_markdown_cell(NOT_RUN))
+    return whole
 
 
 def _run(name: str, notebook: Mapping[str, Any]) -> nbformat.NotebookNode:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import inspect
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from importlib import import_module
+from typing import Any
 
 from percept_obs.papers import Entry, Ledger, Verdict, judge
 from percept_obs.papers.mathml import shown
@@ -60,13 +61,13 @@ def contents(title: str, intro: str, entries: Iterable[str]) -> str:
     return "\n".join([f"# {title}", "", intro, "", "```{toctree}", ":maxdepth: 1", "", *entries, "```", ""])
 
 
-def ledger_pages(ledgers: Mapping[str, Ledger]) -> Pages:
-    """Yield a page for each ledger and for each of its equations."""
-    judge(tuple(ledgers.values()))
+def ledger_pages(ledgers: Mapping[str, Ledger], judged: Collection[str]) -> Pages:
+    """Yield a page for each ledger and for each of its equations; of those not judged, what is recorded."""
+    judge(tuple(ledgers[name] for name in judged))
     intro = "What the papers print, equation by equation, and what a computation says of it."
     yield "ledger/index.md", contents("The papers, equation by equation", intro, [f"{slug(n)}/index" for n in ledgers])
     for name, ledger in ledgers.items():
-        yield from _ledger(name, ledger)
+        yield from _ledger(name, ledger, name in judged)
 
 
 def slug(text: str) -> str:
@@ -89,7 +90,7 @@ def ledger_addresses(ledger: Ledger) -> dict[str, str]:
     return names
 
 
-def _ledger(name: str, ledger: Ledger) -> Pages:
+def _ledger(name: str, ledger: Ledger, judged: bool) -> Pages:
     names = ledger_addresses(ledger)
     rows = "".join(
         f'<tr><td><a href="{names[e.place]}.html">{shown(e.place)}</a><td>{e.page}<td>{shown(e.says)}'
@@ -101,11 +102,14 @@ def _ledger(name: str, ledger: Ledger) -> Pages:
     yield f"ledger/{slug(name)}/index.md", f"# {ledger.paper}\n\n{table}\n"
     addresses = ["index", *names.values(), "index"]
     for entry, before, after in zip(ledger.entries, addresses, addresses[2:], strict=False):
-        yield f"ledger/{slug(name)}/{names[entry.place]}.md", _entry(name, ledger, entry, before, after)
+        yield f"ledger/{slug(name)}/{names[entry.place]}.md", _entry(name, ledger, entry, judged, before, after)
 
 
-def _entry(name: str, ledger: Ledger, entry: Entry, before: str, after: str) -> str:
-    rows = "".join(f'<tr><th scope="row">{title}<td>{shown(part)}' for title, part in entry.parts.items() if part)
+def _entry(name: str, ledger: Ledger, entry: Entry, judged: bool, before: str, after: str) -> str:
+    parts: Mapping[str, Any] = (
+        entry.parts if judged else {"print": entry.printed, "recorded, not computed": str(entry.expected)}
+    )
+    rows = "".join(f'<tr><th scope="row">{title}<td>{shown(part)}' for title, part in parts.items() if part)
     table = f'```{{raw}} html\n<table class="entry">{rows}</table>\n```'
     code = f"```python\nfrom percept_obs.papers import {name}\n\n{name}[{entry.place!r}]\n```"
     ways = f"[before]({before}.md) · [all of {ledger.paper}](index.md) · [next]({after}.md)"

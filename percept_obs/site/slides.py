@@ -1,4 +1,4 @@
-"""Slides of the notebooks, turned by reveal.js: cells with the tag ``slide`` and exercises, with live labs."""
+"""Slides of the notebooks, turned by reveal.js: the title, cells with the tag ``slide``, exercises; labs are alive."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ def prepare(folder: Path, style: str) -> None:
 
 
 def slides_of(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
-    """Return a notebook of the cells that are slides, of code only what it shows."""
+    """Return a notebook of its title and the cells that are slides, of code only what it shows."""
     from nbformat.v4 import new_markdown_cell
 
     made = deepcopy(notebook)
     made.cells = []
-    for cell in deepcopy(notebook.cells):
+    for k, cell in enumerate(deepcopy(notebook.cells)):
         tags = cell.metadata.get("tags", [])
-        if "slide" in tags or ("exercise" in tags and cell.cell_type == "markdown"):
+        if k == 0 or "slide" in tags or ("exercise" in tags and cell.cell_type == "markdown"):
             begins = [] if cell.source.startswith("#") else [new_markdown_cell(NEXT)]
             cell.metadata["tags"] = [*tags, "remove-input"]
             made.cells += [*begins, cell]

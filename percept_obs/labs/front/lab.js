@@ -139,6 +139,7 @@ body:not([data-jp-theme-light]) .percept-lab.dark {
   cursor: grab;
 }
 .percept-lab .handle:active { cursor: grabbing; }
+.percept-lab .handle:focus { z-index: 1; }
 .percept-lab .handle.outside { opacity: 0.6; }
 .percept-lab .diamond::before {
   content: "";

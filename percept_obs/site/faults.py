@@ -1,0 +1,82 @@
+"""Faults of notebooks and texts that can be known without running anything."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Collection, Iterator, Mapping
+from importlib.util import find_spec
+from itertools import count, pairwise
+from posixpath import join
+from typing import Any
+
+from percept_obs.exercises import stub
+from percept_obs.site.front import STEPS
+from percept_obs.site.pages import MODULES, slug
+
+TAGS = frozenset({"slide", "exercise", "hint", "solution"})
+"""Tags of cells; the site and the copies for students know no others."""
+
+
+def faults_of(
+    notebooks: Mapping[str, Mapping[str, Any]], texts: Mapping[str, str], names: Mapping[str, Any], run: Collection[str]
+) -> Iterator[str]:
+    """Yield what is wrong with notebooks and texts, each in a sentence that begins with its place.
+
+    Names are what the texts have substituted, see `named`; modules are asked for by notebooks that are to be run.
+    """
+    from jinja2 import Environment, StrictUndefined, TemplateError
+
+    pages = {f"{folder}/index.md" for folder in ("notebooks", "ledger", "reference")}
+    pages |= {*texts, *(f"notebooks/{name}" for name in notebooks), *(f"reference/{slug(m)}.rst" for m in MODULES)}
+    for name, notebook in notebooks.items():
+        cells = [(cell, "".join(cell["source"]), {*cell["metadata"].get("tags", ())}) for cell in notebook["cells"]]
+        words = "\n\n".join(text for cell, text, _ in cells if cell["cell_type"] == "markdown")
+        found = [*_in_cells(cells, name in run), *_in_words(words, "notebooks", pages)]
+        if not any(name[:2] in numbers for numbers in STEPS.values()):
+            found.append("the first page does not lead to it; name it in STEPS of percept_obs/site/front.py")
+        yield from (f"notebooks/{name}: {fault}" for fault in found)
+    for path, text in texts.items():
+        try:
+            words = Environment(undefined=StrictUndefined).from_string(text).render(names)
+            yield from (f"{path}: {fault}" for fault in _in_words(words, "", pages))
+        except TemplateError as error:
+            yield f"{path}: {error.message}"
+
+
+def _in_cells(cells: list[tuple[Mapping[str, Any], str, set[str]]], run: bool) -> Iterator[str]:
+    missing: set[str] = set()
+    tasks, numbers = [text for _, text, tags in cells if "exercise" in tags and text.startswith("**")], count(1)
+    if not all(text.startswith(f"**Exercise {k}") for text, k in zip(tasks, numbers, strict=False)):
+        yield "its exercises are not **Exercise 1**, **Exercise 2** and so on"
+    if cells[0][0]["cell_type"] != "markdown" or not cells[0][1].startswith("# "):
+        yield "its first cell is no title, such as: # Two observers"
+    if not any("slide" in tags for _, _, tags in cells):
+        yield 'it has no slides; give the cells that are to be shown the tag "slide"'
+    for cell, text, tags in cells:
+        if tags - TAGS:
+            yield f"cell {cell['id']} has the tag {', '.join(tags - TAGS)}; known are {', '.join(sorted(TAGS))}"
+        if cell["cell_type"] == "code":
+            try:
+                nodes = [*ast.walk(ast.parse(re.sub(r"^[%!].*", "", text, flags=re.MULTILINE)))]
+                whole = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
+                whole |= {each.name for node in nodes if isinstance(node, ast.Import) for each in node.names}
+                missing |= {top for name in whole if find_spec(top := name.partition(".")[0]) is None}
+                if "solution" in tags:
+                    stub(text)
+            except (SyntaxError, ValueError) as error:
+                yield f"cell {cell['id']}: {error}"
+    if missing and run:
+        yield f"it needs {', '.join(sorted(missing))}; get it with: python -m pip install 'percept-obs[course]'"
+
+
+def _in_words(text: str, folder: str, pages: Collection[str]) -> Iterator[str]:
+    text = re.sub(r"^---\n.*?^---\n|^(`{3,}).*?^\1|`[^`\n]*`", "", text, flags=re.DOTALL | re.MULTILINE)
+    levels = [len(marks) for marks in re.findall(r"^(#+) ", text, re.MULTILINE)]
+    if levels.count(1) != 1 or any(later > level + 1 for level, later in pairwise(levels)):
+        yield f"its headings have the levels {levels}; a page has one title, and no level is left out"
+    for target in re.findall(r"\]\((?!\w+:|/ledger/)([^)\s#]+\.(?:md|ipynb|rst))\b", text):
+        if join("/", folder, target)[1:] not in pages:
+            yield f"a link leads to {target}, which is not there"
+    if re.search(r'!\[\s*\]|<img(?![^>]*\balt="[^"]*\S)', text):
+        yield "a picture has no alternative text"
