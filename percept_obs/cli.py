@@ -1,4 +1,4 @@
-"""The command line: notebooks, pages, verdicts on equations, comparisons, ensembles, and boards to print."""
+"""The command line: notebooks, pages, verdicts on equations, comparisons, and boards to print."""
 
 import argparse
 import json
@@ -179,24 +179,6 @@ def film(options: argparse.Namespace) -> int:
     return 0
 
 
-def sweep(options: argparse.Namespace) -> int:
-    """Run the ensemble that a TOML file describes, here or on a Dask cluster; it goes on where it was stopped."""
-    from contextlib import nullcontext
-
-    from percept_obs.studies.sweep import sweep
-    from percept_obs.validation import needed
-
-    needed("cluster", "xarray", "zarr", *(("distributed",) if options.scheduler else ()))
-    connected: Any = nullcontext()
-    if options.scheduler:
-        from distributed import Client
-
-        connected = Client(options.scheduler)
-    with connected as client:
-        print(sweep(options.file, client))
-    return 0
-
-
 STEPS = """1. Print board.pdf at 100 %, not "fit to page".
 2. Measure the ruler below the board: it must be 100 mm. If it is 97.5 mm, say --ruler 97.5 when you read the film.
 3. Lay the board flat, put things around it, and film for 20 s while you move the telephone slowly past them."""
@@ -311,10 +293,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add(
         "--tracks", type=_positive(int), default=40, help="most tracks in the table of observers (default: %(default)s)"
     )
-
-    add = command(sweep, "run an ensemble")
-    add("file", type=Path, metavar="FILE", help="a TOML file that describes the ensemble")
-    add("--scheduler", default="", metavar="ADDRESS", help="of a Dask cluster, tcp://host:8786")
 
     add = command(board, "write a board to print and film")
     add("directory", nargs="?", type=Path, default=Path("."), metavar="DIR", help="folder of the files (default: here)")

@@ -37,7 +37,6 @@ from percept_obs.recording.stereo_mat import read_stereo_mat
 from percept_obs.structure import pixels
 from percept_obs.structure import scenarios as structure_scenarios
 from percept_obs.studies import chatter, comparison, consistency, least_squares
-from percept_obs.studies.trust import trust_over_time
 from percept_obs.system.signal import Signal
 
 PACKAGE = str(Path(po.__file__).parent)
@@ -224,7 +223,6 @@ def calls():
         (least_squares.moving_window_least_squares, {"recording": recording, "window": 1.0}),
         (render, {"recording": recording, "count": 2, "size": 8, "radius": 0.1}),
         (gains.grid, {"gain": [1.0, 2.0]}),
-        (trust_over_time, {"run": run, "tolerance": 0.1, "count": 3}),
     ]
     return [(getattr(f, "__qualname__", type(f).__name__), f, arguments) for f, arguments in good]
 

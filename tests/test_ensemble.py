@@ -34,7 +34,6 @@ from percept_obs.studies import chunks
 from percept_obs.studies.chunks import Unfinished, open_store
 from percept_obs.studies.plan import STATUS, Plan
 from percept_obs.studies.statistics import OUTCOMES
-from percept_obs.studies.sweep import sweep
 from percept_obs.validation import environment
 
 pytestmark = pytest.mark.usefixtures("xr")
@@ -254,9 +253,6 @@ def test_a_store_is_written_by_one_ensemble_at_a_time(tmp_path):
         assert stored.shape == (4, 2)
     with pytest.raises(ValueError, match="holds something else"), open_store(store, "other", (4, 2), 1):
         pass
-
-
-test_a_sweep_is_named_by_a_path = refuses(sweep, *((path, "path is .* expected text") for path in (None, 7, b"x")))
 
 
 test_what_makes_no_sense_is_refused = refuses(

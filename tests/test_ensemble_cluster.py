@@ -6,13 +6,13 @@ import subprocess
 import sys
 import time
 from concurrent.futures import as_completed
+from pathlib import Path
 
 import numpy as np
 import pytest
 from examples import BOTH, NOISY
 
 from percept_obs import ensemble, ibo, scenarios
-from percept_obs.cli import main
 from percept_obs.studies import chunks
 
 pytestmark = pytest.mark.usefixtures("xr")
@@ -21,20 +21,12 @@ EQ35 = scenarios.ma2005_eq35()
 OVER = {"gain": np.linspace(2, 20, 16), "b1": [0.4, 0.5]}
 SETTINGS = {"over": OVER, "seeds": 4, "duration": 4.0, "camera": NOISY, "chunk": 8, "language": "python"}
 
-SWEEP = """
-scenario = "ma2005_eq35"
-observer = "identifier_based"
-outputs = ["y1", "y2"]
-seeds = 4
-duration = 4.0
-camera = {noise = 0.01}
-chunk = 8
-language = "python"
-store = "sweep.zarr"
-
-[over]
-gain = {from = 2.0, to = 20.0, count = 16}
-b1 = [0.4, 0.5]
+IN_A_STORE = """
+import numpy as np
+from examples import BOTH
+from test_ensemble_cluster import EQ35, SETTINGS
+from percept_obs import ensemble, ibo
+ensemble(EQ35, ibo(BOTH), **SETTINGS, store="kept.zarr")
 """
 
 
@@ -67,57 +59,22 @@ def test_a_killed_worker_costs_time_only(xr, alone, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_killed_sweep_goes_on_where_it_was(xr, alone, tmp_path):
+def test_a_killed_ensemble_goes_on_where_it_was(xr, alone, tmp_path):
     import zarr
 
-    (tmp_path / "sweep.toml").write_text(SWEEP)
-    store = tmp_path / "sweep.zarr"
-    command = [sys.executable, "-m", "percept_obs.cli", "sweep", str(tmp_path / "sweep.toml")]
-    sweep = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=tmp_path)
+    store = tmp_path / "kept.zarr"
+    path = os.pathsep.join(filter(None, [str(Path(__file__).parent), *sys.path]))
+    command = [sys.executable, "-c", IN_A_STORE]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    running = subprocess.Popen(command, **quiet, cwd=tmp_path, env=os.environ | {"PYTHONPATH": path})
     chunks = store / "progress" / "runs" / "c"
-    while sweep.poll() is None and len(list(chunks.glob("*/0"))) < 3:
+    while running.poll() is None and len(list(chunks.glob("*/0"))) < 3:
         time.sleep(0.01)
-    sweep.kill()
-    sweep.wait()
+    running.kill()
+    running.wait()
     done = (zarr.open_group(store, mode="r")["progress/runs"][:, 0] > 0).sum()
     assert done % 8 == 0
     assert 24 <= done < alone.status.size
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(tmp_path)
-        assert main(["sweep", str(tmp_path / "sweep.toml")]) == 0
+    ensemble(EQ35, ibo(BOTH), **SETTINGS, store=store)
     with xr.open_zarr(store, consolidated=False) as found:
         xr.testing.assert_identical(found.load(), alone)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("", "sweep.toml: No such file"),
-        ("scenario = ", "is no TOML"),
-        ('scenario = "ma2005_eq35"\nobserver = "ibo"\nnoise = 1\nstore = "a.zarr"', "does not know noise"),
-        ('scenario = "eq99"\nobserver = "ibo"\nstore = "a.zarr"', "no scenario 'eq99'; there are ma2005_eq35"),
-        ('scenario = "ma2005_eq35"\nobserver = "x"\nstore = "a.zarr"', "no observer 'x'; there are identifier_based"),
-        ('scenario = "ma2005_eq35"\nobserver = "identifier_based"', "needs store"),
-        ('scenario = "ma2005_eq35"\nobserver = "identifier_based"\nstore = "a.zarr"\nduration = "long"', "duration"),
-        *(
-            (f'scenario = "planar"\nobserver = "identifier_based"\nstore = "a.zarr"\n{wrong}', message)
-            for wrong, message in (
-                ("gains = {form = 1}", "no gain form"),
-                ('gains = {gain = "x"}', "gains is the dict"),
-                ("over = [1]", "over is the list [1]; expected a mapping"),
-                ("over = {gain = {from = 1.0, to = 2.0, count = 1e10}}", "count for gain is the number 1"),
-                ("over = {gain = {from = 1.0, to = 2.0, count = 10000000000}}", "1e+10 values of gain"),
-                ("over = {gain = {from = 1.0, to = 2.0, count = -1}}", "give finite numbers"),
-                ('outputs = "y1"', "put it into a list"),
-            )
-        ),
-        ('scenario = ["x"]\nobserver = "identifier_based"\nstore = "a.zarr"', "scenario is the list ['x']"),
-        ('scenario = "planar"\nobserver = "identifier_based"\nstore = 5', "store is the number 5; expected text"),
-    ],
-)
-def test_a_file_that_makes_no_sense_or_is_not_there_is_refused(tmp_path, text, message, capsys):
-    file = tmp_path / "sweep.toml"
-    if text:
-        file.write_text(text)
-    assert main(["sweep", str(file)]) == 2
-    assert message in capsys.readouterr().err

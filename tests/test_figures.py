@@ -596,7 +596,6 @@ LABELS = {
     "servoing": ["time (s)", "$|y - y^{*}|$", "|error of the depth|", "$|w|^2$ (m$^2$/s$^2$)"],
     "settings_map": ["noise", "gain"],
     "signals": ["time (s)", "$y_{1}$", "$y_{2}$", "$y_{3} = 1/Z$ (1/m)", "|error|"],
-    "trust": ["time (s)", "depth $Z$ (m)"],
     "velocities": ["time (s)", "velocity along x (m/s)"],
 }
 """Labels of the axes in each figure's example: first along x, then along y."""

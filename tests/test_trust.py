@@ -1,4 +1,4 @@
-"""Estimates that cannot be right are flagged without a truth, good ones are not, and a picture says when."""
+"""Estimates that cannot be right are flagged without a truth, and good ones are not."""
 
 from dataclasses import replace
 
@@ -9,10 +9,8 @@ from sample_sizes import sampled
 from trust_study import POSES, blindly, posed, shares, trusted_with
 
 from percept_obs import Camera, Gaussian, Scenario, ekf, pinhole, record, rigid, track
-from percept_obs.figures import trust
 from percept_obs.observers import OBSERVERS
 from percept_obs.recording.utias import UTIAS_CUT, load_utias
-from percept_obs.studies.trust import trust_over_time
 
 STILL = (0.0, 0.0, 0.0)
 FILTER = ekf(FORM, noise_variance=4e-6, hidden_variance=0.1)
@@ -53,48 +51,15 @@ def test_a_longer_window_that_tells_something_else_is_said():
     assert replace(found, longer=(lost,)).disagreement(run.view, known) == np.inf
 
 
-def paused(truth=True):
-    """A camera that stands for 1.6 s and then moves."""
-    motion = rigid(camera_velocity=lambda t: [0.4 * max(0, -np.cos(t)), 0, 0])
-    seen = record(Scenario("paused", motion, (0.6, 0.2, 3), 4, pinhole()), camera=Camera(0.05, Gaussian(0.002)), seed=1)
-    return seen if truth else replace(seen, truth=None, signal=None)
-
-
 @pytest.mark.slow
-def test_a_pause_is_shaded_and_not_trusted():
-    found = trust_over_time(track(paused(), FILTER, {"y3": 0.25}), count=6)
-    assert not found.trusted[0]
-    assert found.unexcited[0] == pytest.approx(found.time[0], abs=0.06)
-    assert found.trusted[-1]
-    assert found.distance[-1] == pytest.approx(3, rel=0.1)
-    assert np.isnan(found.distance[0])
-    drawn_trust = trust(found)
-    assert found.sentence in drawn_trust.text
-    assert len(drawn_trust.axes[0].collections) >= 2
-    blind = trust_over_time(track(paused(truth=False), FILTER, {"y3": 0.25}), count=6)
-    np.testing.assert_array_equal(blind.trusted, found.trusted)
-    assert "truth" not in [line.get_label() for line in trust(blind).axes[0].lines]
-
-
-def test_it_says_what_was_known_then():
-    """Later samples change nothing."""
-    run = track(paused(), FILTER, {"y3": 0.25})
-    early = trust_over_time(track(paused().between(0, run.time[50]), FILTER, {"y3": 0.25}), count=1)
-    whole = trust_over_time(run, count=3)
-    assert whole.index.tolist() == [20, 50, 80]
-    assert str(early.trusts[0]) == str(whole.trusts[1])
-
-
-def test_what_makes_no_sense_is_refused():
-    run = track(paused(), FILTER)
-    for ask, message in (
-        (lambda: trust_over_time(run, count=0), "count is 0"),
-        (lambda: trust_over_time(run, tolerance=0), "must be positive"),
-        (lambda: trust_over_time(track(paused().between(0, 1), FILTER)), "40 are needed"),
-        (lambda: trust(run), "expected a TrustOverTime"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            ask()
+def test_a_pause_is_not_trusted_and_what_was_known_before_it_is():
+    motion = rigid(camera_velocity=lambda t: [0.4 * max(0, -np.cos(t)), 0, 0])  # it stands for 1.6 s first
+    seen = record(Scenario("paused", motion, (0.6, 0.2, 3), 4, pinhole()), camera=Camera(0.05, Gaussian(0.002)), seed=1)
+    for whole in (seen, replace(seen, truth=None, signal=None)):
+        early, late = (track(whole.between(0, end), FILTER, {"y3": 0.25}).trust() for end in (1.5, 4.0))
+        assert not early.trusted
+        assert early.information.unexcited == pytest.approx(1.5, abs=0.06)
+        assert late.trusted
 
 
 @pytest.mark.slow

@@ -46,7 +46,6 @@ from percept_obs.studies.consistency import claimed_distance
 from percept_obs.studies.least_squares import moving_window_least_squares
 from percept_obs.studies.likelihood import tune_by_likelihood
 from percept_obs.studies.sensitivity import sensitivity
-from percept_obs.studies.trust import trust_over_time
 from percept_obs.studies.tuning import own_length
 from percept_obs.system.motion import TIME
 
@@ -155,8 +154,9 @@ def least(form, unit):
 
 
 def trusted(form, unit):
-    found = trust_over_time(follow(seen(unit), ibo(form)), count=4)
-    return {"deviation": found.deviation, "distance": found.distance / unit, "trusted": found.trusted}
+    run = follow(seen(unit), ibo(form))
+    found, trust = run.information, run.trust()
+    return {"deviation": found.deviation, "inverse": found.estimate[-1] * unit, "trusted": trust.trusted}
 
 
 def diagnosed(form, unit):

@@ -14,7 +14,6 @@ from percept_obs.figures.studies import (
     entries,
     servoing,
     settings_map,
-    trust,
 )
 
 __all__ = [
@@ -41,6 +40,5 @@ __all__ = [
     "servoing",
     "settings_map",
     "signals",
-    "trust",
     "velocities",
 ]

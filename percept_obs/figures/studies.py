@@ -18,7 +18,6 @@ from percept_obs.studies.diagnosis import Diagnosis
 from percept_obs.studies.diagnosis.causes import CAUSES
 from percept_obs.studies.sensitivity import SHARE, Sensitivity
 from percept_obs.studies.servoing import Servoing
-from percept_obs.studies.trust import TrustOverTime
 from percept_obs.validation import Kind
 
 if TYPE_CHECKING:
@@ -349,58 +348,6 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
     yield curves.linear(ax, curves.bulk(late), shown, "the changes", reach=0.5)
     legend_above(ax)
     return [ax]
-
-
-@figure("it is something else")
-def trust(found: TrustOverTime, ax: Axes | None = None) -> Drawing:
-    """The estimated distance with what the samples told of it, shaded where they hardly told anything.
-
-    Parameters
-    ----------
-    found : TrustOverTime
-        From `percept_obs.studies.trust.trust_over_time`.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios, track
-    >>> from percept_obs.studies.trust import trust_over_time
-    >>> recording = record(scenarios.ma2005_eq35(), 5, Camera(0.05))
-    >>> run = track(recording, ibo(PerspectiveSystem(affine(), pinhole())))
-    >>> print(figures.trust(trust_over_time(run, count=3)).text.split(". ")[0])
-    Estimated depth in metres over 0 to 5 s, with what the samples tell at 3 times
-    """
-    ax, run = canvas(ax, 3.2), found.run
-    _shade(ax, found)
-    sampled, spread = found.distance, 2 * found.deviation
-    there = np.isfinite(sampled) & (spread < 1)
-    ends = sampled[there] * spread[there] / np.array([1 + spread[there], 1 - spread[there]])
-    name = r"what the samples tell, $\pm 2\sigma$"
-    ax.errorbar(
-        found.time[there], sampled[there], ends, color=look.BLUE, linestyle="", marker=".", capsize=2, label=name
-    )
-    estimate = curves.estimated_distance(run)
-    ax.plot(run.elapsed, estimate, **look.ESTIMATE)
-    if run.recording.truth is not None:
-        ax.plot(run.elapsed, run.recording.distance, **look.TRUTH)
-    ax.set_xlim(run.elapsed[0], run.elapsed[-1])
-    ax.set(xlabel="time (s)", ylabel=describe.in_metres(run.view))
-    (word, _), over = describe.depth_or_range(run.view), describe.times(run)
-    yield f"Estimated {word} in metres over {over}, with what the samples tell at {len(found.time)} times."
-    yield found.sentence
-    firm = sampled[there & (spread < 0.5)]
-    yield curves.linear(ax, firm if firm.size else curves.bulk(estimate), estimate, f"the estimated {word}", reach=1.0)
-    legend_above(ax)
-    return [ax]
-
-
-def _shade(ax: Axes, found: TrustOverTime) -> None:
-    """Shade the seconds in which the samples told nothing."""
-    time = found.run.elapsed
-    ends = zip(found.time, found.unexcited, strict=True)
-    told_nothing = np.any([(time >= end - length) & (time <= end) & (length > 0) for end, length in ends], axis=0)
-    band: dict[str, Any] = {"color": look.ORANGE, "alpha": 0.3, "linewidth": 0, "label": "hardly excited"}
-    if told_nothing.any():
-        ax.fill_between(time, 0, 1, where=told_nothing, transform=ax.get_xaxis_transform(), **band)
 
 
 @figure("it is something else, or the samples are pixels, so that nothing was fitted")

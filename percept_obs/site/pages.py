@@ -25,7 +25,7 @@ FOLDERS = {
     "observability": "",
     "tracking": "",
     "studies": "all_observers chatter comparison consistency diagnosis efficiencies fields least_squares likelihood "
-    "sensitivity servoing sweep trust tuning",
+    "sensitivity servoing tuning",
     "system": "bearings derivation inertial state_view",
     "recording": "camera_files colmap imu poses pose_files scenarios state_scenario stereo_mat track_files utias "
     "worked",

@@ -134,7 +134,6 @@ def ensemble(
 
     See Also
     --------
-    percept_obs.studies.sweep.sweep : From a file.
     percept_obs.studies.comparison.compare : Several observers.
 
     Notes

@@ -46,7 +46,6 @@ EXAMPLES = MappingProxyType(
         "Scene": "scenarios.ma2005_eq35()",
         "Sensitivity": "sensitivity(recording, observer)",
         "StructureAndMotion": 'StructureAndMotion(("v_c1",))',
-        "TrustOverTime": "trust_over_time(run)",
         "Uniform": "Uniform(0.01)",
     }
 )
