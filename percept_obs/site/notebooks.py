@@ -40,7 +40,7 @@ NO_RECORDING = (
     "The recording dataset3.mat is not on the machine that wrote this page, and there was no network to fetch it; "
     f"put it into a folder, and name that in {UTIAS_VARIABLE}."
 )
-NOT_RUN = "*This page was written without running its notebook: it shows no results, no figures and no labs.*"
+NOT_RUN = "This site was written without running, to look at its texts."
 NEEDS_PYTHON = "This control needs Python: run the notebook to move it."
 PREPARE = "from percept_obs.site.notebooks import draw_for_pages\ndraw_for_pages()"
 
@@ -93,26 +93,18 @@ def run_all(
     """
 
     def made(name: str) -> nbformat.NotebookNode:
-        return _unrun(notebooks[name]) if name in missing else _run(name, notebooks[name])
+        return not_run(notebooks[name], NO_RECORDING) if name in missing else _run(name, notebooks[name])
 
     with ThreadPoolExecutor(parallel) as several:
         yield from zip(notebooks, several.map(made, notebooks), strict=True)
 
 
-def _unrun(notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
-    import nbformat
-
-    whole = nbformat.reads(json.dumps(notebook), as_version=4)
-    whole.cells.insert(1, nbformat.v4.new_markdown_cell(f"*{NO_RECORDING} So no cell of this page was run.*"))
-    return whole
-
-
-def not_run(notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
+def not_run(notebook: Mapping[str, Any], why: str = NOT_RUN) -> nbformat.NotebookNode:
     """Return a notebook that says below its title why it shows no results."""
     import nbformat
 
     whole = nbformat.reads(json.dumps(notebook), as_version=4)
-    whole.cells.insert(1, nbformat.v4.new_markdown_cell(NOT_RUN))
+    whole.cells.insert(1, nbformat.v4.new_markdown_cell(f"*{why} So no cell of this page was run: it has no results.*"))
     return whole
 
 
