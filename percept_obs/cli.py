@@ -267,9 +267,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add(
         "--python", action="store_true", help="add JupyterLite, in which a reader runs the notebooks without installing"
     )
-    fast = (
-        "run no notebook and judge no equation, to look at all pages within a minute; they say that results are missing"
-    )
+    fast = "run no notebook and judge no equation: all pages, without results, within a minute"
     add("--without-running", action="store_true", help=fast)
 
     add = command(check, "judge the papers' equations")

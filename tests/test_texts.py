@@ -15,7 +15,6 @@ from jupyter_harness import NOTEBOOKS
 from test_notebooks import code as code_of
 
 from percept_obs.observers.family import Family
-from percept_obs.papers import NAMED
 from percept_obs.site import TEXTS
 from percept_obs.site.named import named
 from percept_obs.site.pages import MODULES, public
@@ -87,7 +86,7 @@ def test_a_lesson_fills_its_time(minutes):
 
 @pytest.mark.parametrize("name", ON_THE_SITE)
 def test_what_a_text_names_by_a_key_is_there(name):
-    values = named([path.name for path in NOTEBOOKS.glob("*.ipynb")], NAMED)
+    values = named([path.name for path in NOTEBOOKS.glob("*.ipynb")])
     for key, _, place in re.findall(r'{{ (\w+)(\["(.*?)"\])? }}', ON_THE_SITE[name]):
         assert key in values, f"nothing is called {key}"
         assert not place or values[key][place], f"{key} has no {place}"

@@ -53,8 +53,8 @@ async () => {
       node.focus({ preventScroll: true }); // a link that skips to the content comes with the focus
       node.scrollIntoView({ block: "center", inline: "center", behavior: "instant" });
       const box = hiding(node);
-      const way = box ? `is cut by ${named(box)}` : obstacle(node);
       box?.scrollTo(0, 0);
+      const way = obstacle(node) && box ? `is cut by ${named(box)}` : obstacle(node);
       if (way !== null) wrong.push(`${named(node)} ${way}`);
       node.blur();
     }

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from percept_obs.labs.shared.saved import STARTER, library_of
-from percept_obs.papers import NAMED, Ledger
+from percept_obs.papers import NAMED
 from percept_obs.site import front_ends, lite, slides
 from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
 from percept_obs.site.faults import faults_of
@@ -60,7 +60,6 @@ SETTINGS: dict[str, Any] = {
 def build(
     target: Path,
     notebooks: Mapping[str, Mapping[str, Any]],
-    ledgers: Mapping[str, Ledger] = NAMED,
     parallel: int = 2,
     tell: Callable[[str], object] = print,
     exam: bool = False,
@@ -76,8 +75,6 @@ def build(
         Folder of the site; pages of an earlier one are replaced.
     notebooks : mapping of str to notebook
         Files as they are read, by their names.
-    ledgers : mapping of str to Ledger, optional
-        The papers; all, when left out.
     parallel : int
         Number of processes: notebooks that run at once, then pages that are written at once.
     tell : function of str, optional
@@ -101,8 +98,8 @@ def build(
         built.  What can be known without running is asked before any work starts, and told at once.
     """
     address = address and address.rstrip("/") + "/"
-    run = {*notebooks, *ledgers} if run is None else {*run}
-    names = named(notebooks, ledgers, exam)
+    run = {*notebooks, *NAMED} if run is None else {*run}
+    names = named(notebooks, exam)
     texts = {path: text for path, text in _texts(exam) if path.endswith(".md")}
     if found := [*faults_of(notebooks, texts, names, run)]:
         raise SiteFault("\n".join(("the site has faults:", *found)))
@@ -110,13 +107,12 @@ def build(
         source, shown = Path(folder) / "site", Path(folder) / "slides"
         lab = first_lab()
         _notebooks(source, shown, notebooks, run, parallel, lab, tell)
-        if judged := run & {*ledgers}:
-            tell("judging the papers' equations")
+        tell("writing the papers' equations")
         for path, text in [
-            *ledger_pages(ledgers, judged),
+            *ledger_pages(run & {*NAMED}),
             *reference(),
             *_texts(exam),
-            ("index.md", front(lab, notebooks, ledgers)),
+            ("index.md", front(lab, notebooks)),
         ]:
             _write(source / path, text)
         tell("writing the pages")

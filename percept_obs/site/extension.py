@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from functools import cache
+from functools import cache, partial
 from typing import Any
 from xml.etree import ElementTree
 
@@ -22,16 +22,16 @@ def setup(app: Any) -> dict[str, bool]:
     app.connect("missing-reference", _find_public)
     app.connect("html-page-context", _let_keys_scroll)
     app.connect("html-page-context", describe)
-    app.connect("html-page-context", _share_contents, priority=400)  # before the theme asks for them
+    app.connect("html-page-context", _mark_contents, priority=400)  # before the theme asks for them
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
-def _share_contents(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
-    context["toctree"] = lambda **options: _contents(app, page, options)
+def _mark_contents(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    context["toctree"] = partial(_contents, app, page)
 
 
-def _contents(app: Any, page: str, options: dict[str, Any]) -> str:
-    """Contents with a page marked: made once, for to make them anew for each page is a quarter of all the writing."""
+def _contents(app: Any, page: str, **options: Any) -> str:
+    """Contents with a page marked: made once, for to make them anew for each page takes a quarter of the time."""
     from sphinx.environment.adapters.toctree import TocTree
 
     if "contents" not in vars(app):

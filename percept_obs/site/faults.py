@@ -6,8 +6,8 @@ import ast
 import re
 from collections.abc import Collection, Iterator, Mapping
 from importlib.util import find_spec
-from itertools import count, pairwise
-from posixpath import join
+from itertools import pairwise
+from posixpath import join, normpath
 from typing import Any
 
 from percept_obs.exercises import stub
@@ -27,15 +27,15 @@ def faults_of(
     """
     from jinja2 import Environment, StrictUndefined, TemplateError
 
-    pages = {f"{folder}/index.md" for folder in ("notebooks", "ledger", "reference")}
-    pages |= {*texts, *(f"notebooks/{name}" for name in notebooks), *(f"reference/{slug(m)}.rst" for m in MODULES)}
+    pages = {*texts, *(f"{folder}/index.md" for folder in ("notebooks", "ledger", "reference"))}
+    pages |= {*(f"notebooks/{name}" for name in notebooks), *(f"reference/{slug(m)}.rst" for m in MODULES)}
     for name, notebook in notebooks.items():
         cells = [(cell, "".join(cell["source"]), {*cell["metadata"].get("tags", ())}) for cell in notebook["cells"]]
         words = "\n\n".join(text for cell, text, _ in cells if cell["cell_type"] == "markdown")
-        found = [*_in_cells(cells, name in run), *_in_words(words, "notebooks", pages)]
+        for fault in (*_in_cells(cells, name in run), *_in_words(words, "notebooks", pages)):
+            yield f"notebooks/{name}: {fault}"
         if not any(name[:2] in numbers for numbers in STEPS.values()):
-            found.append("the first page does not lead to it; name it in STEPS of percept_obs/site/front.py")
-        yield from (f"notebooks/{name}: {fault}" for fault in found)
+            yield f"notebooks/{name}: no step of the first page has it; name it in percept_obs/site/front.py"
     for path, text in texts.items():
         try:
             words = Environment(undefined=StrictUndefined).from_string(text).render(names)
@@ -45,9 +45,8 @@ def faults_of(
 
 
 def _in_cells(cells: list[tuple[Mapping[str, Any], str, set[str]]], run: bool) -> Iterator[str]:
-    missing: set[str] = set()
-    tasks, numbers = [text for _, text, tags in cells if "exercise" in tags and text.startswith("**")], count(1)
-    if not all(text.startswith(f"**Exercise {k}") for text, k in zip(tasks, numbers, strict=False)):
+    tasks = [text for _, text, tags in cells if "exercise" in tags and text.startswith("**")]
+    if not all(text.startswith(f"**Exercise {k}") for k, text in enumerate(tasks, 1)):
         yield "its exercises are not **Exercise 1**, **Exercise 2** and so on"
     if cells[0][0]["cell_type"] != "markdown" or not cells[0][1].startswith("# "):
         yield "its first cell is no title, such as: # Two observers"
@@ -58,16 +57,14 @@ def _in_cells(cells: list[tuple[Mapping[str, Any], str, set[str]]], run: bool) -
             yield f"cell {cell['id']} has the tag {', '.join(tags - TAGS)}; known are {', '.join(sorted(TAGS))}"
         if cell["cell_type"] == "code":
             try:
-                nodes = [*ast.walk(ast.parse(re.sub(r"^[%!].*", "", text, flags=re.MULTILINE)))]
-                whole = {node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module}
-                whole |= {each.name for node in nodes if isinstance(node, ast.Import) for each in node.names}
-                missing |= {top for name in whole if find_spec(top := name.partition(".")[0]) is None}
+                ast.parse(re.sub(r"^[%!].*", "", text, flags=re.MULTILINE))
                 if "solution" in tags:
                     stub(text)
             except (SyntaxError, ValueError) as error:
                 yield f"cell {cell['id']}: {error}"
-    if missing and run:
-        yield f"it needs {', '.join(sorted(missing))}; get it with: python -m pip install 'percept-obs[course]'"
+            for name in re.findall(r"^ *(?:import|from(?=.* import)) (\w+)", text, re.MULTILINE) if run else ():
+                if find_spec(name) is None:
+                    yield f"cell {cell['id']} needs {name}; get it with: python -m pip install 'percept-obs[course]'"
 
 
 def _in_words(text: str, folder: str, pages: Collection[str]) -> Iterator[str]:
@@ -76,7 +73,7 @@ def _in_words(text: str, folder: str, pages: Collection[str]) -> Iterator[str]:
     if levels.count(1) != 1 or any(later > level + 1 for level, later in pairwise(levels)):
         yield f"its headings have the levels {levels}; a page has one title, and no level is left out"
     for target in re.findall(r"\]\((?!\w+:|/ledger/)([^)\s#]+\.(?:md|ipynb|rst))\b", text):
-        if join("/", folder, target)[1:] not in pages:
+        if normpath(join("/", folder, target))[1:] not in pages:
             yield f"a link leads to {target}, which is not there"
-    if re.search(r'!\[\s*\]|<img(?![^>]*\balt="[^"]*\S)', text):
+    if re.search(r'!\[\s*\]|<img(?![^>]*\balt="\s*[^"\s])', text):
         yield "a picture has no alternative text"

@@ -10,7 +10,7 @@ from typing import Any
 
 from percept_obs.labs import observer_lab
 from percept_obs.labs.shared.saved import place_of
-from percept_obs.papers import Ledger, Verdict
+from percept_obs.papers import LEDGERS, Verdict
 from percept_obs.site.pages import slug
 
 STEPS = {
@@ -75,7 +75,7 @@ def first_lab() -> dict[str, Any]:
     return dict(observer_lab().get_state())
 
 
-def front(state: Mapping[str, Any], notebooks: Mapping[str, Mapping[str, Any]], ledgers: Mapping[str, Ledger]) -> str:
+def front(state: Mapping[str, Any], notebooks: Mapping[str, Mapping[str, Any]]) -> str:
     """Text of the first page.
 
     Parameters
@@ -84,8 +84,6 @@ def front(state: Mapping[str, Any], notebooks: Mapping[str, Mapping[str, Any]], 
         State of its lab, see `first_lab`.
     notebooks : mapping of str to notebook
         The site's notebooks, by their file names.
-    ledgers : mapping of str to Ledger
-        The site's papers.
     """
     tree = "\n".join(["```{toctree}", ":hidden:", ":maxdepth: 2", "", *PAGES.split(), "```"])
     scripts = "".join(f'<script defer src="_static/{name}"></script>' for name in ("labs.js", "alone.js"))
@@ -95,7 +93,7 @@ def front(state: Mapping[str, Any], notebooks: Mapping[str, Mapping[str, Any]], 
         f'<p class="front-question"><strong>{QUESTION}</strong><br>{answers}</p>{ASKED}',
         f"<h2>Learn</h2>{_course(notebooks)}{_links(LEARN)}",
         f'<div class="front-doors"><section><h2>Teach</h2>{_links(TEACH)}</section>',
-        f"<section><h2>Look things up</h2>{_verdicts(ledgers)}{_links(LOOK_UP)}</section></div>",
+        f"<section><h2>Look things up</h2>{_verdicts()}{_links(LOOK_UP)}</section></div>",
         '<h2>Install</h2><pre>python3 -m pip install -e ".[course]"\npercept-obs lab</pre>',
     ]
     return "\n\n".join([HEADER, "```{raw} html\n" + "\n".join(doors) + "\n```", tree, ""])
@@ -128,9 +126,9 @@ def _title_and_time(notebook: Mapping[str, Any]) -> tuple[str, str]:
     return title[1] if title else "", time[1] if time else ""
 
 
-def _verdicts(ledgers: Mapping[str, Ledger]) -> str:
+def _verdicts() -> str:
     """A bar of all verdicts on the papers' equations."""
-    counted = Counter(entry.expected for ledger in ledgers.values() for entry in ledger.entries)
+    counted = Counter(entry.expected for ledger in LEDGERS for entry in ledger.entries)
     told = [(verdict, counted[verdict]) for verdict in Verdict if counted[verdict]]
     parts = "".join(f'<span class="{slug(NAMES[verdict])}" style="flex: {n}"></span>' for verdict, n in told)
     words = ", ".join(f"{n} {NAMES[verdict]}" for verdict, n in told)

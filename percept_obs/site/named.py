@@ -3,7 +3,7 @@
 A text writes ``{{ nb["02"] }}``, ``{{ MA2005["(11)"] }}`` or ``{{ longest_step }}``, and MyST substitutes these.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 from percept_obs.compile.integrator import LARGEST_STEP_RATE, LONGEST_STEP, PLANT_STEP
@@ -12,19 +12,10 @@ from percept_obs.labs.points.settings import SCHEMA as OF_POINTS
 from percept_obs.labs.points.texts import MOST_POINTS
 from percept_obs.labs.shared.surfaces import MOST_NUMBERS
 from percept_obs.labs.structure.settings import SCHEMA as OF_STRUCTURE
-from percept_obs.papers import NAMED, Ledger
+from percept_obs.papers import NAMED
 from percept_obs.recording.path import RELATIVE_ERROR
 from percept_obs.site.pages import ledger_addresses, slug
 from percept_obs.tracking.verdict import TOLERANCE
-
-
-class Notebooks(dict[str, str]):
-    """Links to notebooks by their numbers; a number alone for one that is not on the site."""
-
-    def __missing__(self, number: str) -> str:
-        """Return the number alone."""
-        return number
-
 
 EXAM = {
     True: "[Questions with their solutions](exam.md), each computed by code that runs as it stands.",
@@ -33,20 +24,17 @@ EXAM = {
 """Words for the exam, by whether the site has it."""
 
 
-def named(notebooks: Iterable[str], ledgers: Mapping[str, Ledger], exam: bool = True) -> dict[str, Any]:
-    """Return substitutions by their keys; what is not on the site, an equation or the exam, has no link.
+def named(notebooks: Iterable[str], exam: bool = True) -> dict[str, Any]:
+    """Return substitutions by their keys; the exam has no link where it is not on the site.
 
-    >>> found = named(["02_two_observers.ipynb"], NAMED)
-    >>> found["nb"]["02"], found["nb"]["03"], found["MA2005"]["(11)"]
-    ('[02](/notebooks/02_two_observers.ipynb)', '03', '[(11)](/ledger/ma2005/11.md)')
+    >>> found = named(["02_two_observers.ipynb"])
+    >>> found["nb"]["02"], found["MA2005"]["(11)"]
+    ('[02](/notebooks/02_two_observers.ipynb)', '[(11)](/ledger/ma2005/11.md)')
     """
     return {
-        "nb": Notebooks({name[:2]: f"[{name[:2]}](/notebooks/{name})" for name in notebooks}),
+        "nb": {name[:2]: f"[{name[:2]}](/notebooks/{name})" for name in notebooks},
         **{
-            name: {
-                place: f"[{place}](/ledger/{slug(name)}/{page}.md)" if name in ledgers else place
-                for place, page in ledger_addresses(ledger).items()
-            }
+            name: {p: f"[{p}](/ledger/{slug(name)}/{page}.md)" for p, page in ledger_addresses(ledger).items()}
             for name, ledger in NAMED.items()
         },
         "exam": EXAM[exam],

@@ -35,7 +35,7 @@ class SiteFault(RuntimeError):
     """Raised when a page cannot be built, or would have a fault."""
 
 
-NOT_RUN = "*This page was written without running its notebook: it shows no results, no figures and no labs.*"
+NOT_RUN = "This site was written without running, to look at its texts."
 NEEDS_PYTHON = "This control needs Python: run the notebook to move it."
 PREPARE = "from percept_obs.site.notebooks import draw_for_pages\ndraw_for_pages()"
 
@@ -75,7 +75,9 @@ def not_run(notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
     import nbformat
 
     whole = nbformat.reads(json.dumps(notebook), as_version=4)
-    whole.cells.insert(1, nbformat.v4.new_markdown_cell(NOT_RUN))
+    whole.cells.insert(
+        1, nbformat.v4.new_markdown_cell(f"*{NOT_RUN} So no cell of this page was run: it has no results.*")
+    )
     return whole
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import inspect
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 from importlib import import_module
-from typing import Any
 
-from percept_obs.papers import Entry, Ledger, Verdict, judge
+from percept_obs.papers import NAMED, Entry, Ledger, Verdict, judge
 from percept_obs.papers.mathml import shown
 
 Pages = Iterator[tuple[str, str]]
@@ -61,12 +60,12 @@ def contents(title: str, intro: str, entries: Iterable[str]) -> str:
     return "\n".join([f"# {title}", "", intro, "", "```{toctree}", ":maxdepth: 1", "", *entries, "```", ""])
 
 
-def ledger_pages(ledgers: Mapping[str, Ledger], judged: Collection[str]) -> Pages:
+def ledger_pages(judged: Collection[str]) -> Pages:
     """Yield a page for each ledger and for each of its equations; of those not judged, what is recorded."""
-    judge(tuple(ledgers[name] for name in judged))
+    judge(tuple(NAMED[name] for name in judged))
     intro = "What the papers print, equation by equation, and what a computation says of it."
-    yield "ledger/index.md", contents("The papers, equation by equation", intro, [f"{slug(n)}/index" for n in ledgers])
-    for name, ledger in ledgers.items():
+    yield "ledger/index.md", contents("The papers, equation by equation", intro, [f"{slug(n)}/index" for n in NAMED])
+    for name, ledger in NAMED.items():
         yield from _ledger(name, ledger, name in judged)
 
 
@@ -106,10 +105,9 @@ def _ledger(name: str, ledger: Ledger, judged: bool) -> Pages:
 
 
 def _entry(name: str, ledger: Ledger, entry: Entry, judged: bool, before: str, after: str) -> str:
-    parts: Mapping[str, Any] = (
-        entry.parts if judged else {"print": entry.printed, "recorded, not computed": str(entry.expected)}
-    )
-    rows = "".join(f'<tr><th scope="row">{title}<td>{shown(part)}' for title, part in parts.items() if part)
+    recorded = ("print", entry.printed), ("recorded, not computed here", str(entry.expected))
+    parts = entry.parts.items() if judged else recorded
+    rows = "".join(f'<tr><th scope="row">{title}<td>{shown(part)}' for title, part in parts if part)
     table = f'```{{raw}} html\n<table class="entry">{rows}</table>\n```'
     code = f"```python\nfrom percept_obs.papers import {name}\n\n{name}[{entry.place!r}]\n```"
     ways = f"[before]({before}.md) · [all of {ledger.paper}](index.md) · [next]({after}.md)"
