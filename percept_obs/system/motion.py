@@ -48,7 +48,7 @@ class Motion:
     parameters : tuple of sympy symbols
         The symbols in A and b, in the order of the signal's columns.
     signal : Signal, optional
-        Values of `parameters` over time.
+        Values of `parameters` over time.  It pickles with functions of a module; a lambda, pickle refuses.
 
     Raises
     ------
