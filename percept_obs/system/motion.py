@@ -39,43 +39,39 @@ TIME = sp.Symbol("t", real=True)
 class Motion:
     """Motion X' = A X + b, in symbols, with numbers for the symbols if they are known.
 
-        Parameters
-        ----------
-        name : str
-            Name in messages, such as "affine".
-        A, b : sympy matrices of shape (n, n) and (n, 1), n = 3 for a single point
-            Coefficients in 1/s and m/s.
-        parameters : tuple of sympy symbols
-            The symbols in A and b, in the order of the signal's columns.
-        signal : Signal, optional
-    <<<<<<< HEAD
-            Values of `parameters` over time.
-        errors : PoseErrors, optional
-            Errors of the camera's poses that the signal was made from.
-    =======
-            Values of `parameters` over time.  It pickles with functions of a module; a lambda, pickle refuses.
-    >>>>>>> values
+    Parameters
+    ----------
+    name : str
+        Name in messages, such as "affine".
+    A, b : sympy matrices of shape (n, n) and (n, 1), n = 3 for a single point
+        Coefficients in 1/s and m/s.
+    parameters : tuple of sympy symbols
+        The symbols in A and b, in the order of the signal's columns.
+    signal : Signal, optional
+        Values of `parameters` over time.  It pickles with functions of a module; a lambda, pickle refuses.
+    errors : PoseErrors, optional
+        Errors of the camera's poses that the signal was made from.
 
-        Raises
-        ------
-        WrongKind
-            If an argument is of another kind.
+    Raises
+    ------
+    WrongKind
+        If an argument is of another kind.
 
-        See Also
-        --------
-        affine, rigid, linear : Make it.
+    See Also
+    --------
+    affine, rigid, linear : Make it.
 
-        Examples
-        --------
-        >>> from percept_obs import rigid
-        >>> motion = rigid(camera_angular_velocity=[0.0, 0.0, 0.1], camera_velocity=[0.0, 0.0, 0.5])
-        >>> motion.A
-        Matrix([
-        [    0,  w_c3, -w_c2],
-        [-w_c3,     0,  w_c1],
-        [ w_c2, -w_c1,     0]])
-        >>> motion.values[motion.parameters[2]]
-        0.1
+    Examples
+    --------
+    >>> from percept_obs import rigid
+    >>> motion = rigid(camera_angular_velocity=[0.0, 0.0, 0.1], camera_velocity=[0.0, 0.0, 0.5])
+    >>> motion.A
+    Matrix([
+    [    0,  w_c3, -w_c2],
+    [-w_c3,     0,  w_c1],
+    [ w_c2, -w_c1,     0]])
+    >>> motion.values[motion.parameters[2]]
+    0.1
     """
 
     name: str
