@@ -151,7 +151,10 @@ def test_a_cell_that_cannot_be_read_is_refused(cell):
 
 def test_a_sentence_is_read_and_no_spreadsheet_takes_it_for_a_formula():
     assert said_in('model_answer("Only" " motion.", "8a6c4be0")') == "Only motion."
-    assert said_in("model_answer(str(1), '8')") == said_in("!x") == said_in("model_answer()") == ""
+    assert said_in("model_answer()") == said_in("model_answer(..., '8')") == ""
+    for cell, why in (("model_answer(str(1), '8')", "no plain text"), ("!x", "is no Python")):
+        with pytest.raises(ValueError, match=why):
+            said_in(cell)
     assert [harmless(entry) for entry in ("=1+1", "@x", "so", -3)] == ["'=1+1", "'@x", "so", -3]
 
 
