@@ -2,6 +2,7 @@
 
 import json
 import os
+import subprocess
 import sys
 
 import pandas as pd
@@ -96,7 +97,8 @@ def handed_in(tmp_path_factory):
         else:
             for name, content in files.items():
                 (place / name).write_bytes(content)
-    return folder, alone
+    yield folder, alone
+    subprocess.run(["rm", "-rf", folder], check=True)  # Python does not remove folders that are that deep
 
 
 @pytest.mark.slow

@@ -53,9 +53,9 @@ MADE = {
 """Values of classes whose docstrings make none."""
 
 MOTIONS = {
-    "motion of functions": po.rigid(swinging, swinging, [0, 0, 0]),
+    "motion of functions": po.rigid(camera_angular_velocity=swinging, camera_velocity=swinging),
     "motion of t": po.affine(sp.zeros(3, 3), [sp.Abs(sp.cos(TIME)), 0.1, 0.2]),
-    "sampled motion": po.rigid(*np.ones((3, 2, 3)), times=[0, 1]),
+    "sampled motion": po.rigid(camera_angular_velocity=np.ones((2, 3)), camera_velocity=np.ones((2, 3)), times=[0, 1]),
 }
 
 
@@ -176,7 +176,7 @@ def test_observers_follow_copies_with_the_same_bits():
 
 
 def test_a_function_without_a_name_copies_and_pickle_says_that_it_cannot():
-    motion = po.rigid(lambda time: [time, 0, 0], [0, 0, 1], [0, 0, 0])
+    motion = po.rigid(camera_angular_velocity=lambda time: [time, 0, 0])
     assert copy.deepcopy(motion).known(2.0).tolist() == motion.known(2.0).tolist()
     with pytest.raises((pickle.PicklingError, AttributeError), match="lambda"):
         pickle.dumps(motion)

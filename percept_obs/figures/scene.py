@@ -128,7 +128,7 @@ def velocities(paths: Mapping[str, CameraPath], axis: int = 0, ax: Axes | None =
     >>> from percept_obs.recording.worked import worked_folder
     >>> poses = read_tum(worked_folder() / "poses.txt")
     >>> print(figures.velocities({"smoothed": poses.path()}).text.split(". ")[1])
-    smoothed: from -0.226 to 0.226
+    smoothed: from -0.225 to 0.229.
 
     See Also
     --------

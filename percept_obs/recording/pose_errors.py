@@ -9,6 +9,7 @@ import numpy as np
 from percept_obs.compile import Array
 from percept_obs.recording.reckoning import reckon
 from percept_obs.system.motion import Motion
+from percept_obs.validation import travels
 
 WINDOW = 1.0
 """Seconds over which a virtual landmark is followed; the next window begins half of it later."""
@@ -20,6 +21,7 @@ NEAR = 0.2
 """Share of its depth at which a virtual landmark is left out, for it comes too near to the camera."""
 
 
+@travels
 @dataclass(frozen=True, eq=False)
 class PoseErrors:
     """Errors of the poses that a motion was made from.

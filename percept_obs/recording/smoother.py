@@ -70,7 +70,7 @@ def smooth(time: Array, values: Array, floor: float = 0.0, memory: float | None 
     floor = max(floor, (ROUNDING * float(np.ptp(values, axis=0).max(initial=0.0))) ** 2, np.finfo(float).tiny)
     squares = [np.asarray((differences @ differences.T).diagonal(-k)) for k in range(4)]
     overlaps = [np.asarray((jerk.T @ jerk.multiply(weights[:, None])).diagonal(-k)) for k in range(4)]
-    band = [np.array([np.pad(row, (0, k)) for k, row in enumerate(rows)]) for rows in (squares, overlaps)]
+    band = [np.array([np.pad(row, (0, len(data) - len(row))) for row in rows]) for rows in (squares, overlaps)]
 
     def solved(smoothness: float) -> tuple[Array, float, float]:
         """Return A^-1 d, the variance r, and -2 log of the likelihood, for a value of lambda."""
