@@ -90,9 +90,11 @@ def _run(name: str, notebook: Mapping[str, Any]) -> nbformat.NotebookNode:
     whole = nbformat.reads(json.dumps(notebook), as_version=4)
     whole.cells.insert(0, nbformat.v4.new_code_cell(PREPARE))
     try:
-        client_of(whole, timeout=600, kernel_name="python3").execute()
+        client_of(whole, timeout=600, startup_timeout=600, kernel_name="python3").execute()
     except CellExecutionError as error:
         raise SiteFault(f"{name} does not run: {error.ename}: {error.evalue}") from None
+    except (TimeoutError, RuntimeError) as error:  # a cell without an end, or a kernel that does not start or dies
+        raise SiteFault(f"{name} does not run: {error}") from None
     del whole.cells[0]
     return whole
 
