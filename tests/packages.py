@@ -75,5 +75,6 @@ class Among:
 def hide(absent):
     """Let modules look as if they were not installed, those too that were imported already."""
     sys.meta_path[:] = [Among(finder, absent) for finder in sys.meta_path]
-    for name in [name for name in sys.modules if name.partition(".")[0] in absent]:
+    anew = {*absent, "xarray"}  # which remembers whether there was a dask
+    for name in [name for name in sys.modules if name.partition(".")[0] in anew]:
         del sys.modules[name]

@@ -50,7 +50,7 @@ def test_it_shows_the_board_and_the_camera_is_found(made):
 @pytest.mark.slow
 @pytest.mark.parametrize(("kind", "least", "most"), [("sideways", 0.8, 1.0), ("turn", 0.0, 0.2)])
 def test_moving_sideways_is_trusted_and_turning_is_not(kind, least, most, tmp_path):
-    film = read_film(quick_film(11, tmp_path, kind=kind, tremor=0.3)[0])
+    film = read_film(quick_film(11, tmp_path, kind=kind, tremor=0.3, quick=0.0)[0])
     trusts = [run.trust() for run in film.runs[::4]]
     assert least <= np.mean([trust.trusted for trust in trusts]) <= most
     if kind == "turn":

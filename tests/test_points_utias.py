@@ -122,7 +122,7 @@ def test_a_constant_p_learns_no_depth_here():
     """Half of the rays turn by less than 0.36 rad in 2 s; no constant gain then takes a tenth off an error of depth."""
     recording, found = landmarks(), ray_error()
     turning = np.median(ray_turning(recording.view, recording.time, recording.truth)[recording.seen])
-    assert turning == pytest.approx(0.179, abs=0.001)
+    assert turning == pytest.approx(0.181, abs=0.001)
     for gain in np.geomspace(0.01, 100, 50):
         matrix = found.matrix.subs({found.gain: gain, found.turning: turning})
         assert expm(2 * np.array(matrix, dtype=float))[1, 1] > 0.9

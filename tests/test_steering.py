@@ -113,7 +113,7 @@ def test_a_rigid_motion_is_steered_by_its_camera():
         pinhole(),
     )
     moved = steered(scenario).motion.known(np.array([0.0, 3.0]))
-    np.testing.assert_allclose(moved[:, :3], [[0, 0.1, 0]] * 2)
+    np.testing.assert_allclose(moved[:, :3], [[0, -0.1, 0]] * 2)
     assert abs(moved[1, 5]) < 0.15
     np.testing.assert_allclose(np.linalg.norm(moved[:, 3:6], axis=1), np.hypot(0.05, 0.3))
 

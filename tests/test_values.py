@@ -25,6 +25,8 @@ from ipywidgets import Widget
 import percept_obs as po
 from percept_obs.checking import target_of
 from percept_obs.film import example_film, read_film
+from percept_obs.papers import MA2005
+from percept_obs.papers.entries import Finding
 from percept_obs.recording.colmap import ColmapModel
 from percept_obs.recording.stereo_mat import StereoTracks
 from percept_obs.site.pages import public
@@ -48,6 +50,7 @@ MADE = {
     type(COROLLARIES[0]): lambda: COROLLARIES[0],
     ColmapModel: lambda: ColmapModel(POSES, po.PixelCamera((9, 9), (5, 5)), np.eye(3), np.eye(2), np.eye(2), (7,)),
     po.FunctionObserver: lambda: po.FunctionObserver("kept", BOTH, np.copy, kept, np.copy),
+    Finding: lambda: MA2005["(10)"].finding,  # which another test may have made already
     po.film.Film: lambda: read_film(example_film()),
 }
 """Values of classes whose docstrings make none."""

@@ -196,7 +196,7 @@ class CanonicalForm(PartitionedSystem):
     >>> form.x1, form.x2
     ((y1,), (y2, y3))
     >>> form.w.T
-    Matrix([[-w1*y1 - w3, -v_c1 + v_c3*y1 + v_p1 - v_p3*y1]])
+    Matrix([[w_c1*y1 + w_c3, -v_c1 + v_c3*y1 + v_p1 - v_p3*y1]])
     """
 
     rate: sp.ImmutableMatrix = field(init=False)
