@@ -12,6 +12,6 @@ def assert_fits(page, name):
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 800})
         found = page.evaluate(LAW)
-        assert found["wrong"] == [], f"{name}, {width} px wide"
+        assert found["wrong"] == [], f"{name}, {width} px wide: {found['wrong']}"
         looked += found["looked"]
     return looked

@@ -17,9 +17,11 @@ SETTINGS: dict[str, Any] = {
     "revealjs_static_path": ["_static"],
     "revealjs_css_files": ["slides.css"],
     "revealjs_style_theme": "white",
-    # Labs are drawn to scale, and their keys and drags turn no slide; reveal.js counts their sections as slides.
+    # Labs are drawn to scale, and their keys and drags turn no slide; reveal.js counts their sections as slides.  On a
+    # telephone it would show all slides below one another, each cut to the height of the window.
     "revealjs_script_conf": "{width: '100%', height: '100%', margin: 0.02, center: false, hash: true, touch: false, "
-    "progress: false, keyboardCondition: () => !document.activeElement.closest('.percept-lab')}",
+    "progress: false, scrollActivationWidth: null, "
+    "keyboardCondition: () => !document.activeElement.closest('.percept-lab')}",
     "nb_mime_priority_overrides": [("revealjs", kind, place) for place, kind in enumerate(KINDS, 1)],
 }
 """Settings of Sphinx where they are not those of the site."""
