@@ -32,6 +32,9 @@ SHA256 = "ac7f9d90199d376875ef13a472d94b728e84f38ce70b7c7ed145060c895e02e5"
 
 TABLES = Path(__file__).with_name("data") / "utias"
 TABLE_TOLERANCE = 1e-4
+# The tables' poses and velocities are those of parabolas over 0.3 s to either side, the package's of its own smoother:
+# places differ by millimetres, rates by a fifth of their root mean square at most.
+SMOOTHING, SPEEDS = 0.01, 0.2
 # The table prints pixels to three decimals, so it may be off by half of the last one.
 PIXEL_TOLERANCE = 0.0005 + 1e-9
 # The path is fitted anew around every sample, so its differences and its fitted rates agree only so closely:
@@ -86,6 +89,11 @@ def assert_agree(name: str, columns: list[Values]) -> None:
     reference = np.genfromtxt(TABLES / f"{name}.csv", delimiter=",", names=True)
     for column, values in zip(reference.dtype.names or (), columns, strict=True):
         tolerance = PIXEL_TOLERANCE if column in ("u_px", "v_px") else TABLE_TOLERANCE
+        if column[0] in "pq" or column == "depth_m_truth":
+            tolerance = SMOOTHING
+        if column[0] in "vw" and column != "v_px":
+            assert np.sqrt(np.mean((values - reference[column]) ** 2)) < SPEEDS * np.std(reference[column]), column
+            continue
         np.testing.assert_allclose(values, reference[column], rtol=0, atol=tolerance, err_msg=column)
 
 
@@ -96,7 +104,7 @@ def along(track: Sighting) -> Values:
 
 
 def test_camera_agrees_with_its_table(tables: StereoTracks) -> None:
-    path = tables.path
+    path = tables.path.at(tables.time)
     assert len(tables.time) == 1900
     orientation = path.orientation * np.sign(path.orientation[:, :1])  # of q and -q the one with qx > 0
     vectors = (path.position, orientation, path.velocity, path.angular_velocity)
@@ -143,14 +151,14 @@ def predicted_rate(y: Values, velocity: Values, angular_velocity: Values) -> Val
 
 def rate_errors(tables: StereoTracks, sign_of_v: int, sign_of_w: int) -> Values:
     """Relative root mean square error of each predicted rate against differences of the true projections."""
-    errors, rates = [], []
+    errors, rates, known = [], [], tables.path.at(tables.time)
     for track in tables.tracks:
         path = slice(track.first, track.last + 1)
         point = tables.points[path, track.point]
         y = np.column_stack([point[:, :2], np.ones(len(point))]) / point[:, 2:]
         # At the ends of a track only a one-sided difference is to be had.
         rate = np.gradient(y, tables.time[path], axis=0)[1:-1]
-        v, w = sign_of_v * tables.path.velocity[path], sign_of_w * tables.path.angular_velocity[path]
+        v, w = sign_of_v * known.velocity[path], sign_of_w * known.angular_velocity[path]
         errors.append(predicted_rate(y, v, w)[1:-1] - rate)
         rates.append(rate)
     error, rate = np.vstack(errors), np.vstack(rates)
@@ -167,10 +175,11 @@ def test_the_known_motion_and_none_of_another_sign_moves_the_image(
 
 
 def test_the_pixels_are_those_of_the_landmark(tables: StereoTracks) -> None:
+    path = tables.path.at(tables.time)
     for track in tables.tracks:
         samples, landmark = along(track)
-        camera_from_world = tables.path.rotation[samples].inv()
-        point = camera_from_world.apply(tables.landmarks[track.point] - tables.path.position[samples])
+        camera_from_world = path.rotation[samples].inv()
+        point = camera_from_world.apply(tables.landmarks[track.point] - path.position[samples])
         projected = np.array(tables.camera.centre) + point[:, :2] / point[:, 2:] * np.array(tables.camera.focal)
         # Tracks 14 and 15 are missed by 22 and 19 px, all others by 4 to 13 px; a mirrored axis or another
         # landmark would cost at least 46 px.

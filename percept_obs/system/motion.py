@@ -196,8 +196,8 @@ def rigid(
     ----------
     camera_angular_velocity, camera_velocity, point_velocity : arrays of shape (3,) or (K, 3), functions of time, \
 optional
-        w_c in rad/s, as a gyroscope in the camera has it, and v_c and v_p in m/s; symbols when all are left out, else 0
-        for those that are.
+        Values of w_c in rad/s, as a gyroscope in the camera has it, and of v_c and v_p in m/s; symbols when all are
+        left out, else 0 for those that are.
     times : array of shape (K,), optional
         Times in seconds of sampled velocities.
     chwa_rotation : array of shape (3,) or (K, 3), or function of time, optional
