@@ -33,8 +33,8 @@ SHA256 = "ac7f9d90199d376875ef13a472d94b728e84f38ce70b7c7ed145060c895e02e5"
 TABLES = Path(__file__).with_name("data") / "utias"
 TABLE_TOLERANCE = 1e-4
 # The tables' poses and velocities are those of parabolas over 0.3 s to either side, the package's of its own smoother:
-# places differ by millimetres, rates by a fifth of their root mean square at most.
-SMOOTHING, SPEEDS = 0.01, 0.2
+# places differ by millimetres, rates by a quarter of their root mean square.
+SMOOTHING, SPEEDS = 0.01, 0.3
 # The table prints pixels to three decimals, so it may be off by half of the last one.
 PIXEL_TOLERANCE = 0.0005 + 1e-9
 # The path is fitted anew around every sample, so its differences and its fitted rates agree only so closely:
