@@ -10,7 +10,8 @@ from percept_obs.film.lens import reaches
 
 
 @pytest.mark.parametrize(
-    ("lens", "corner", "reached"), [((-0.33, 0), 1.0, False), ((-0.33, 0), 0.5, True), ((0.1, 0.05), 0.8, True)]
+    ("lens", "corner", "reached"),
+    [((-0.33, 0), 1.0, False), ((-0.33, 0), 0.669, False), ((-0.33, 0), 0.5, True), ((0.1, 0.05), 0.8, True)],
 )
 def test_a_lens_that_folds_reaches_no_corner(lens, corner, reached):
     assert reaches(np.array(lens, dtype=float), corner) is reached
