@@ -112,7 +112,7 @@ def numbers() -> tuple[Array, Array, Indices]:
 
 
 def for_the_page() -> str:
-    """Text of the page's module ``common/model/integrator.js``: the method and its constants."""
+    """Text of the page's module ``engine/integrator.js``: the method and its constants."""
     square, weights, _ = numbers()
     constants: dict[str, Any] = {
         "COUPLING": square.tolist(),

@@ -107,7 +107,7 @@ def dots(values: Array, **others: Any) -> dict[str, Any]:
 
 
 def for_the_page() -> str:
-    """The page's module ``common/page/looks.js``: dashes, and the colours of both themes as a style sheet."""
+    """The page's module ``draw/looks.js``: dashes, and the colours of both themes as a style sheet."""
     pairs = [*((tone.light, tone.dark) for tone in CURVES), *MORE_CURVES]
     named = {f"line-{k}": pair for k, pair in enumerate(pairs)} | {n: (t.light, t.dark) for n, t in NAMED.items()}
     rules = [

@@ -23,9 +23,9 @@ LABS: Mapping[str, Callable[[], Parts]] = MappingProxyType(
 )
 """For each lab, what is printed for its page."""
 
-INTEGRATOR = FRONT / "src/common/model/integrator.js"
-LOOKS = FRONT / "src/common/page/looks.js"
-READER = FRONT / "src/desk/model/printed.js"
+INTEGRATOR = FRONT / "src/engine/integrator.js"
+LOOKS = FRONT / "src/draw/looks.js"
+READER = FRONT / "src/labs/desk/model/printed.js"
 """The method of the loops, the marks of all pictures and the reader of formulas, in the page's sources, from which the
 bundle is built."""
 

@@ -4,16 +4,16 @@
 // class that extends Lab (common/page/lab.js) and draws them; name it below, as its Python side names it in `kind`.
 // What is in a folder `model` computes and knows nothing of the page; common/ knows nothing of a single lab.
 
-import { serveMaps } from "./common/model/filling.js";
-import { serve } from "./common/model/serving.js";
-import { modelOf } from "./common/model/texts.js";
-import { element } from "./common/page/dom.js";
-import { COLOURS } from "./common/page/looks.js";
-import style from "./common/page/style.css";
-import { DeskLab } from "./desk/lab.js";
-import { ObserverLab } from "./observer/lab.js";
-import { PointsLab } from "./points/lab.js";
-import { StructureLab } from "./structure/lab.js";
+import { serveMaps } from "./old/filling.js";
+import { serve } from "./engine/serving.js";
+import { modelOf } from "./state/texts.js";
+import { element } from "./ui/dom.js";
+import { COLOURS } from "./draw/looks.js";
+import style from "./ui/style.css";
+import { DeskLab } from "./labs/desk/lab.js";
+import { ObserverLab } from "./labs/observer/lab.js";
+import { PointsLab } from "./labs/points/lab.js";
+import { StructureLab } from "./labs/structure/lab.js";
 
 const LABS = { desk_lab: DeskLab, observer_lab: ObserverLab, points_lab: PointsLab, structure_lab: StructureLab };
 

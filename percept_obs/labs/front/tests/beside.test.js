@@ -2,15 +2,15 @@
 // nobody.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { distanceError } from "../src/common/model/errors.js";
-import { Latest } from "../src/common/model/latest.js";
-import { moduleText } from "../src/common/model/modules.js";
-import { constantPath } from "../src/common/model/path.js";
-import { Memory } from "../src/common/model/memory.js";
-import { serve } from "../src/common/model/serving.js";
-import { partIn } from "../src/common/model/space.js";
-import { thinned } from "../src/common/model/thinned.js";
-import { entriesOf, textsOfP } from "../src/points/model/sparse.js";
+import { distanceError } from "../src/engine/errors.js";
+import { Latest } from "../src/engine/latest.js";
+import { moduleText } from "../src/engine/modules.js";
+import { constantPath } from "../src/engine/path.js";
+import { Memory } from "../src/engine/memory.js";
+import { serve } from "../src/engine/serving.js";
+import { partIn } from "../src/old/space.js";
+import { thinned } from "../src/engine/thinned.js";
+import { entriesOf, textsOfP } from "../src/labs/points/sparse.js";
 import { loadHere } from "./load_here.js";
 
 /** A page's latest result, with something beside it that notes what it is asked. */

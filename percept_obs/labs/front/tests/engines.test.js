@@ -1,21 +1,21 @@
 // Laws of the page's engines: what Gramians, restarts, gaps, bands and limits must be, whatever Python makes of them.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Memory } from "../src/common/model/memory.js";
-import { knownAt } from "../src/common/model/tables.js";
-import { Runner } from "../src/common/model/runner.js";
-import { short } from "../src/common/model/scales.js";
-import { verdict } from "../src/common/model/words.js";
-import { translationTowards } from "../src/observer/model/engine.js";
-import { drawResets } from "../src/common/page/chart_events.js";
-import { TimeChart, fillBand } from "../src/common/page/charts.js";
-import { chartOf } from "../src/observer/page/pictures.js";
-import { ENTRIES } from "../src/points/model/flow.js";
-import { windowsOf } from "../src/points/model/gramian.js";
-import { decayRate } from "../src/points/model/measures.js";
-import { Observer } from "../src/points/model/observer.js";
-import { StructureEngine } from "../src/structure/model/engine.js";
-import { innovationOf, quantityOf, rangeOf } from "../src/structure/model/quantities.js";
+import { Memory } from "../src/engine/memory.js";
+import { knownAt } from "../src/engine/tables.js";
+import { Runner } from "../src/engine/runner.js";
+import { short } from "../src/draw/scales.js";
+import { verdict } from "../src/state/words.js";
+import { translationTowards } from "../src/labs/observer/engine.js";
+import { drawResets } from "../src/old/chart_events.js";
+import { TimeChart, fillBand } from "../src/draw/old_charts.js";
+import { chartOf } from "../src/labs/observer/charts.js";
+import { ENTRIES } from "../src/labs/points/flow.js";
+import { windowsOf } from "../src/labs/points/gramian.js";
+import { decayRate } from "../src/labs/points/measures.js";
+import { Observer } from "../src/labs/points/observer.js";
+import { StructureEngine } from "../src/labs/structure/engine.js";
+import { innovationOf, quantityOf, rangeOf } from "../src/labs/structure/quantities.js";
 
 /** A layout of so many points, each with three states of its own. */
 function apart(points) {

@@ -1,9 +1,9 @@
 // What a lab does with its settings: computes once, draws as often as asked, undoes, and hears answers to them only.
 import assert from "node:assert/strict";
 import { afterEach, beforeEach, mock, test } from "node:test";
-import { State } from "../src/common/model/state.js";
-import { Link } from "../src/common/page/link.js";
-import { Lab } from "../src/common/page/lab.js";
+import { State } from "../src/state/state.js";
+import { Link } from "../src/ui/link.js";
+import { Lab } from "../src/ui/lab.js";
 
 const OPENING = { gain: 1, seed: 0, period: 0.01, duration: 1, observers: [], pictures: [], kept: null };
 

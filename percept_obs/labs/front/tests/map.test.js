@@ -2,12 +2,12 @@
 // words.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { cellAt, shareOf, ticksOn, valueIn, valueOn } from "../src/common/model/axes.js";
-import { DIVERGED, EACH_CELL, FOLLOWED, IMPOSSIBLE, orderOf, THEN } from "../src/common/model/cells.js";
-import { Filling } from "../src/common/model/filling.js";
-import { cellInWords, mapInWords, stateInWords } from "../src/common/model/map_words.js";
-import { cellAtShares, Sweep } from "../src/common/model/sweep.js";
-import { edgesOf, toleranceLine } from "../src/common/page/settings_map_drawing.js";
+import { cellAt, shareOf, ticksOn, valueIn, valueOn } from "../src/old/axes.js";
+import { DIVERGED, EACH_CELL, FOLLOWED, IMPOSSIBLE, orderOf, THEN } from "../src/old/cells.js";
+import { Filling } from "../src/old/filling.js";
+import { cellInWords, mapInWords, stateInWords } from "../src/old/map_words.js";
+import { cellAtShares, Sweep } from "../src/old/sweep.js";
+import { edgesOf, toleranceLine } from "../src/old/settings_map_drawing.js";
 
 const axis = (place, more = {}) => ({
   ...{ place, label: place, low: 0, high: 10, log: false, records: false, ...more },

@@ -2,10 +2,10 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { changesInWords } from "../src/common/model/settings.js";
-import { QUESTIONS as ofObserver } from "../src/observer/model/questions.js";
-import { QUESTIONS as ofPoints } from "../src/points/model/questions.js";
-import { QUESTIONS as ofStructure } from "../src/structure/model/questions.js";
+import { changesInWords } from "../src/state/settings.js";
+import { QUESTIONS as ofObserver } from "../src/labs/observer/questions.js";
+import { QUESTIONS as ofPoints } from "../src/labs/points/questions.js";
+import { QUESTIONS as ofStructure } from "../src/labs/structure/questions.js";
 
 for (const [lab, questions] of Object.entries({ ofObserver, ofPoints, ofStructure })) {
   test(`every question is one line with three answers, and its answer has 25 words at most: ${lab}`, () => {

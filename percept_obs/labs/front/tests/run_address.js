@@ -1,10 +1,10 @@
 // Puts settings into addresses and back, and has labs follow addresses, as standard input asks; prints what came of it.
 import { readFileSync } from "node:fs";
-import { settingsIn, textOf } from "../src/common/model/address.js";
-import { Address } from "../src/common/page/address.js";
-import { ObserverLab } from "../src/observer/lab.js";
-import { PointsLab } from "../src/points/lab.js";
-import { StructureLab } from "../src/structure/lab.js";
+import { settingsIn, textOf } from "../src/state/address.js";
+import { Address } from "../src/ui/address.js";
+import { ObserverLab } from "../src/labs/observer/lab.js";
+import { PointsLab } from "../src/labs/points/lab.js";
+import { StructureLab } from "../src/labs/structure/lab.js";
 import { loadHere } from "./load_here.js";
 
 const LABS = { observer: ObserverLab, points: PointsLab, structure: StructureLab };

@@ -1,14 +1,14 @@
 // Runs places of maps over two settings, given on standard input as shares of the way along both axes, and prints what
 // became of them.
 import { readFileSync } from "node:fs";
-import { planOf, valueOn } from "../src/common/model/axes.js";
-import { bare, baseOf, fillCell, settingsAt } from "../src/common/model/cells.js";
-import { axesOf as axesOfPoint } from "../src/observer/model/axes.js";
-import { CellEngine } from "../src/observer/model/cell_engine.js";
-import { Kernels } from "../src/observer/model/kernels.js";
-import { axesOf as axesOfStructure } from "../src/structure/model/axes.js";
-import { StructureEngine } from "../src/structure/model/engine.js";
-import { StructureKernels } from "../src/structure/model/kernels.js";
+import { planOf, valueOn } from "../src/old/axes.js";
+import { bare, baseOf, fillCell, settingsAt } from "../src/old/cells.js";
+import { axesOf as axesOfPoint } from "../src/labs/observer/axes.js";
+import { CellEngine } from "../src/labs/observer/cell_engine.js";
+import { Kernels } from "../src/labs/observer/kernels.js";
+import { axesOf as axesOfStructure } from "../src/labs/structure/axes.js";
+import { StructureEngine } from "../src/labs/structure/engine.js";
+import { StructureKernels } from "../src/labs/structure/kernels.js";
 import { loadHere } from "./load_here.js";
 
 const { model, tasks, kind } = JSON.parse(readFileSync(0, "utf8"));

@@ -1,7 +1,7 @@
 // Judges lines of sheets as the page does, as standard input asks: prints each one's verdict, refusal and mathematics.
 import { readFileSync } from "node:fs";
-import { answerTo, judgedIn, Sheet } from "../src/desk/model/answers.js";
-import { modelOf } from "../src/common/model/texts.js";
+import { answerTo, judgedIn, Sheet } from "../src/labs/desk/model/answers.js";
+import { modelOf } from "../src/state/texts.js";
 
 const { texts, lines = [], settings = [], own = {} } = JSON.parse(readFileSync(0, "utf8"));
 const { reader, sheets, said } = await modelOf(Buffer.from(texts, "base64"), {});

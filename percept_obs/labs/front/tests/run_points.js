@@ -1,9 +1,9 @@
 // Runs settings of the lab of many points, given on standard input, with the page's own engine.
 import { readFileSync } from "node:fs";
-import { pythonOf } from "../src/points/model/code.js";
-import { PointsEngine } from "../src/points/model/engine.js";
-import { PointsKernels } from "../src/points/model/kernels.js";
-import { summaryOf } from "../src/points/model/text.js";
+import { pythonOf } from "../src/labs/points/code.js";
+import { PointsEngine } from "../src/labs/points/engine.js";
+import { PointsKernels } from "../src/labs/points/kernels.js";
+import { summaryOf } from "../src/labs/points/text.js";
 import { loadHere } from "./load_here.js";
 
 const { model, tasks } = JSON.parse(readFileSync(0, "utf8"));

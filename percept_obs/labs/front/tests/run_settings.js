@@ -1,11 +1,11 @@
 // Runs lab settings given on standard input with the page's own engine and prints what it would draw.
 import { readFileSync } from "node:fs";
-import { pythonOf } from "../src/observer/model/code.js";
-import { mapOf } from "../src/observer/model/bound_map.js";
-import { Engine } from "../src/observer/model/engine.js";
+import { pythonOf } from "../src/labs/observer/code.js";
+import { mapOf } from "../src/labs/observer/bound_map.js";
+import { Engine } from "../src/labs/observer/engine.js";
 import { loadHere } from "./load_here.js";
-import { Kernels } from "../src/observer/model/kernels.js";
-import { summaryOf } from "../src/common/model/words.js";
+import { Kernels } from "../src/labs/observer/kernels.js";
+import { summaryOf } from "../src/state/words.js";
 
 const { model, tasks } = JSON.parse(readFileSync(0, "utf8"));
 const kernels = new Kernels(model, loadHere);

@@ -1,10 +1,10 @@
 // Runs settings of the structure lab given on standard input with the page's own engine and prints what it would draw.
 import { readFileSync } from "node:fs";
-import { summaryOf } from "../src/common/model/words.js";
-import { pythonOf } from "../src/structure/model/code.js";
-import { StructureEngine } from "../src/structure/model/engine.js";
-import { StructureKernels } from "../src/structure/model/kernels.js";
-import { quantityOf, rangeOf } from "../src/structure/model/quantities.js";
+import { summaryOf } from "../src/state/words.js";
+import { pythonOf } from "../src/labs/structure/code.js";
+import { StructureEngine } from "../src/labs/structure/engine.js";
+import { StructureKernels } from "../src/labs/structure/kernels.js";
+import { quantityOf, rangeOf } from "../src/labs/structure/quantities.js";
 import { loadHere } from "./load_here.js";
 
 const { model, tasks } = JSON.parse(readFileSync(0, "utf8"));

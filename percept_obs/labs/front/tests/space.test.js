@@ -1,11 +1,11 @@
 // The scene's geometry: looks are rotations, points lie where their rays say, what is outside is shown at the rim.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { advanced, begun, between, stepped, valueBetween } from "../src/common/model/playback.js";
-import { scaled, unseenDirection } from "../src/common/model/velocities.js";
-import * as space from "../src/common/model/space.js";
-import { LabelledPicture, meet } from "../src/common/page/labels.js";
-import { drawVelocities } from "../src/common/page/velocities.js";
+import { advanced, begun, between, stepped, valueBetween } from "../src/engine/between.js";
+import { scaled, unseenDirection } from "../src/engine/velocities.js";
+import * as space from "../src/old/space.js";
+import { LabelledPicture, meet } from "../src/draw/labels.js";
+import { drawVelocities } from "../src/old/velocities.js";
 
 const near = (one, other, slack = 1e-12) =>
   one.forEach((value, i) => assert.ok(Math.abs(value - other[i]) < slack, `${one} is not ${other}`));

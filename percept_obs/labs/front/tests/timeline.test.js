@@ -1,10 +1,10 @@
 // Which time and which values are in sight: all, what the hand asks for, and no more change than needed.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { keptScale, linearScale, logScale, spread } from "../src/common/model/scales.js";
-import { indicesIn, Timeline, zoomed } from "../src/common/model/timeline.js";
-import { spansOf } from "../src/common/model/tables.js";
-import { decades, distancesAround, rangeAround } from "../src/common/page/chart_parts.js";
+import { keptScale, linearScale, logScale, spread } from "../src/draw/scales.js";
+import { indicesIn, Timeline, zoomed } from "../src/old/timeline.js";
+import { spansOf } from "../src/engine/tables.js";
+import { decades, distancesAround, rangeAround } from "../src/draw/lines.js";
 
 const WHOLE = { low: 0, high: 80 };
 

@@ -1,19 +1,19 @@
 // The parts of the page that need no browser: random numbers, tables, scales, measures, words.
 import assert from "node:assert/strict";
-import { schemaAt, schemaOf } from "../src/common/model/schema.js";
+import { schemaAt, schemaOf } from "../src/state/schema.js";
 import { test } from "node:test";
-import { columnOf, distancesOf } from "../src/common/model/derived.js";
-import { changeAt, same, valueAt } from "../src/common/model/settings.js";
-import { settlingTime } from "../src/common/model/errors.js";
-import { PrintedKernels } from "../src/common/model/kernels.js";
-import { moduleText, Modules } from "../src/common/model/modules.js";
-import { smallestEigenvalue, windowed } from "../src/observer/model/measures.js";
-import { uniformFrom } from "../src/common/model/random.js";
-import { linearScale, logScale, readable, short, spread } from "../src/common/model/scales.js";
-import { held, interpolate, lastSamples, stepGrid } from "../src/common/model/tables.js";
-import { inWords, mainly } from "../src/points/model/directions.js";
-import { absencesOf } from "../src/points/model/measures.js";
-import { eigen, pseudoInverse, spectrum } from "../src/points/model/symmetric.js";
+import { columnOf, distancesOf } from "../src/engine/derived.js";
+import { changeAt, same, valueAt } from "../src/state/settings.js";
+import { settlingTime } from "../src/engine/errors.js";
+import { PrintedKernels } from "../src/engine/kernels.js";
+import { moduleText, Modules } from "../src/engine/modules.js";
+import { smallestEigenvalue, windowed } from "../src/labs/observer/measures.js";
+import { uniformFrom } from "../src/engine/random.js";
+import { linearScale, logScale, readable, short, spread } from "../src/draw/scales.js";
+import { held, interpolate, lastSamples, stepGrid } from "../src/engine/tables.js";
+import { inWords, mainly } from "../src/labs/points/directions.js";
+import { absencesOf } from "../src/labs/points/measures.js";
+import { eigen, pseudoInverse, spectrum } from "../src/labs/points/symmetric.js";
 import { loadHere } from "./load_here.js";
 
 test("the generator gives the numbers of the reference implementation", () => {

@@ -1,0 +1,246 @@
+// A picture whose texts never overlap and are never cut: labels look for a free place, and the least important one goes
+// where there is none.
+
+import { same } from "../state/settings.js";
+import { Picture } from "./canvas.js";
+
+/** Places around a thing, and how far off a label looks for one; from the second on with a leader to its thing. */
+const SIDES = [[1, 0], [-1, 0], [0, -1], [0, 1], [1, -1], [-1, -1], [1, 1], [-1, 1]];
+const OFF = [0, 16, 34];
+/** Half the height of a line of letters, and the room at a picture's rim. */
+const HALF = 8;
+export const RIM = 4;
+/** Pixels from one box to the next along a line from which labels keep away, and at most of its length. */
+const [EACH, LONGEST] = [8, 2000];
+
+/** Pixels from the corner of a picture beyond which nothing is drawn. */
+const REACH = 5000;
+
+/**
+ * @typedef {object} Label
+ * @property {string} id       by which it stays on the side where it was
+ * @property {string} text
+ * @property {number[]} at     pixels of the thing that it names
+ * @property {string} colour
+ * @property {number} rank     0 finds its place first
+ * @property {number} [gap]    pixels from the thing's middle to its rim
+ * @property {number[]} [towards]  direction of the side that is tried first
+ * @property {number[][]} [along]  pixels of other places of the thing at which it may be named
+ * @property {number[]} [within]   a box in one of whose corners it stands, in place of beside a thing
+ */
+
+export class LabelledPicture extends Picture {
+  constructor(className, label) {
+    super(className, label);
+    /** @type {Map<string, number>} */
+    this.places = new Map();
+    /** @type {{text: string, box: number[]}[]} what was written, with left, top, right, bottom */
+    this.texts = [];
+    /** @type {number[][]} boxes in which no label may stand */
+    this.taken = [];
+    /** @type {number[][]} boxes in which one stands only if there is no other place */
+    this.busy = [];
+    /** @type {Label[]} */
+    this.labels = [];
+    /** @type {{texts: {text: string, box: number[]}[], taken: number[][]}} what lies below all else */
+    this.under = { texts: [], taken: [] };
+    this.pen = this.context;
+    this.width = this.height = 0;
+    this.theme = /** @type {any} */ (null);
+  }
+
+  /** Begin a picture: an empty canvas. */
+  begin(theme) {
+    const { width, height } = this.fit(theme.font);
+    Object.assign(this, { width, height, theme, texts: [], taken: [], busy: [], labels: [] });
+  }
+
+  /** Draw what seldom changes below all else; what is written there keeps its place. */
+  underlay(key, paint) {
+    super.underlay(key, (below) => {
+      const [texts, taken] = [this.texts.length, this.taken.length];
+      this.pen = below;
+      paint(below);
+      this.end();
+      this.pen = this.context;
+      this.under = { texts: this.texts.splice(texts), taken: this.taken.splice(taken) };
+    });
+    this.texts.push(...this.under.texts);
+    this.taken.push(...this.under.taken);
+  }
+
+  /** Draw a line through points; it is interrupted where one is not a number. */
+  line(points, colour, { width = 1.5, dash = /** @type {number[]} */ ([]), alpha = 1 } = {}) {
+    const { pen } = this;
+    pen.beginPath();
+    let [before, begun] = [/** @type {number[] | null} */ (null), false];
+    for (const point of points) {
+      const there = point.every(Number.isFinite);
+      const part = there && before && reached(before, point);
+      if (part) {
+        if (!begun || part[0] !== before) pen.moveTo(part[0][0], part[0][1]);
+        pen.lineTo(part[1][0], part[1][1]);
+      }
+      begun = Boolean(part) && part[1] === point;
+      before = there ? point : null;
+    }
+    pen.strokeStyle = colour;
+    pen.lineWidth = width;
+    pen.setLineDash(dash);
+    pen.globalAlpha = alpha;
+    pen.stroke();
+    pen.setLineDash([]);
+    pen.globalAlpha = 1;
+  }
+
+  /** Keep labels away from a place. */
+  avoid(x, y, across, down = across) {
+    this.taken.push([x - across, y - down, x + across, y + down]);
+  }
+
+  /** Keep labels away from a straight line; or only where they find another place, if its boxes are the busy ones. */
+  avoidLine(from, to, boxes = this.taken) {
+    const [[x, y], [u, v]] = [from, to];
+    const count = Math.ceil(Math.min(Math.hypot(u - x, v - y), LONGEST) / EACH);
+    for (let k = 1; k < count; k++) {
+      const [cx, cy] = [x + ((u - x) * k) / count, y + ((v - y) * k) / count];
+      boxes.push([cx - 3, cy - 3, cx + 3, cy + 3]);
+    }
+  }
+
+  /** Write a text at its own place, such as a number at an axis; left out where it would be cut or cover another. */
+  write(text, x, y, colour, align = "center") {
+    const wide = this.pen.measureText(text).width;
+    const left = x - { left: 0, center: wide / 2, right: wide }[align];
+    const box = [left, y - HALF + 1, left + wide, y + HALF - 1];
+    if (this.cut(box, 1) || this.texts.some((other) => meet(box, other.box))) return false;
+    this.letter(text, left + wide / 2, y, colour, box);
+    return true;
+  }
+
+  /** Return so much of a text as has room, up to a comma, a colon or a semicolon. */
+  shortened(text, room) {
+    let part = text;
+    while (part && this.pen.measureText(part).width > room) part = part.slice(0, Math.max(0, lastStop(part)));
+    return part;
+  }
+
+  /** @param {Label} label */
+  tag(label) {
+    if (label.text && !Number.isNaN(label.at[0] + label.at[1])) this.labels.push(label);
+  }
+
+  /** Write the labels, the important ones first, each where it stood if that is free. */
+  end() {
+    const labels = this.labels.sort((one, other) => one.rank - other.rank);
+    this.labels = [];
+    for (const label of labels) this.put(label);
+  }
+
+  /** Places of a label, the best first, each with a number of its own. */
+  spotsOf(/** @type {Label} */ { at, along = [], gap = 9, towards, within }, half) {
+    if (within) {
+      const [left, top, right, bottom] = within;
+      const [across, down] = [half + RIM, HALF + 2];
+      const corners = [[left + across, bottom - down], [left + across, top + down]];
+      corners.push([right - across, bottom - down], [right - across, top + down]);
+      return corners.map((spot, key) => ({ key, off: 0, from: at, at: spot }));
+    }
+    const [ahead, down] = towards ?? [0, 0];
+    const part = (/** @type {number[]} */ [u, v]) => (u * ahead + v * down) / Math.hypot(u, v);
+    const sides = towards ? [...SIDES].sort((one, other) => part(other) - part(one)) : SIDES;
+    const keyOf = (off, side, k) =>
+      OFF.length * (SIDES.length * k + SIDES.findIndex((each) => same(each, side))) + OFF.indexOf(off);
+    return OFF.flatMap((off) =>
+      sides.flatMap(([u, v]) =>
+        [at, ...along].map(([x, y], k) => {
+          const across = (gap + off + half + 3) * (u && v ? 0.9 : 1);
+          const spot = [x + u * across, y + v * (gap + off + HALF + 1)];
+          return { key: keyOf(off, [u, v], k), off, from: [x, y], at: spot };
+        }),
+      ),
+    );
+  }
+
+  put(/** @type {Label} */ label) {
+    const { id, text, colour, gap = 9 } = label;
+    const half = this.pen.measureText(text).width / 2;
+    const spots = this.spotsOf(label, half);
+    const boxOf = (/** @type {any} */ { at: [cx, cy] }) => [cx - half - 2, cy - HALF, cx + half + 2, cy + HALF];
+    const free = (spot) => !this.cut(boxOf(spot)) && !this.taken.some((other) => meet(boxOf(spot), other));
+    const quiet = (spot) => free(spot) && !this.busy.some((other) => meet(boxOf(spot), other));
+    // At rest a picture is the same however it came about.
+    const before = this.theme.resting ? [] : spots.filter(({ key }) => key === this.places.get(id));
+    const ways = [() => before.find(quiet), () => spots.find(quiet), () => before.find(free), () => spots.find(free)];
+    let spot;
+    for (const way of ways) spot ??= way();
+    if (!spot) {
+      this.places.delete(id);
+      return;
+    }
+    this.places.set(id, spot.key);
+    const [[x, y], [cx, cy]] = [spot.from, spot.at];
+    if (spot.off && gap) {
+      const far = Math.hypot(cx - x, cy - y);
+      const from = [x + ((cx - x) * gap) / far, y + ((cy - y) * gap) / far];
+      const to = [Math.min(Math.max(x, cx - half), cx + half), Math.min(Math.max(y, cy - HALF + 1), cy + HALF - 1)];
+      this.line([from, to], colour, { width: 1, alpha: 0.6 });
+    }
+    this.letter(text, cx, cy, colour, boxOf(spot));
+  }
+
+  /** Write letters that can be read on whatever lies below them, and report their box. */
+  letter(text, x, y, colour, box) {
+    const { pen } = this;
+    pen.setLineDash([]);
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    pen.lineWidth = 4;
+    pen.strokeStyle = this.ground();
+    pen.strokeText(text, x, y);
+    pen.lineWidth = 1;
+    pen.fillStyle = colour;
+    pen.fillText(text, x, y);
+    this.report(text, box);
+  }
+
+  report(text, box) {
+    this.texts.push({ text, box });
+    this.taken.push(box);
+  }
+
+  /** Colour below the letters. */
+  ground() {
+    return this.theme.paper;
+  }
+
+  cut(/** @type {number[]} */ [left, top, right, bottom], rim = RIM) {
+    return !(left >= rim && top >= rim - 1 && right <= this.width - rim && bottom <= this.height - rim + 1);
+  }
+}
+
+/** Where the last part of a text begins, after a comma, a colon or a semicolon; negative if it has one part only. */
+function lastStop(text) {
+  return text.search(/[,:;][^,:;]*$/);
+}
+
+/** The part of a way that lies within reach of a picture, or null: a page takes minutes to dash a very long line. */
+function reached(from, to) {
+  let [begin, end] = [0, 1];
+  for (const i of [0, 1]) {
+    for (const side of [-1, 1]) {
+      const [room, along] = [REACH - side * from[i], side * (to[i] - from[i])];
+      if (along > 0) end = Math.min(end, room / along);
+      else if (along < 0) begin = Math.max(begin, room / along);
+      else if (room < 0) return null;
+    }
+  }
+  if (begin > end) return null;
+  const at = (part) => from.map((value, i) => value + part * (to[i] - from[i]));
+  return [begin === 0 ? from : at(begin), end === 1 ? to : at(end)];
+}
+
+/** Return true if boxes overlap. */
+export function meet(one, other) {
+  return one[0] < other[2] && one[2] > other[0] && one[1] < other[3] && one[3] > other[1];
+}

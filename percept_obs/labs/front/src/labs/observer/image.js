@@ -1,0 +1,212 @@
+// What the camera sees, on the first screen: the point, how it moves and how it should, and standing things.
+
+import { between, valueBetween, within } from "../../engine/between.js";
+import { affine } from "../../engine/velocities.js";
+import { apply, STANDING_THINGS } from "./standing.js";
+import { claimed, metres } from "./told.js";
+
+/** Names of the copies at other distances. */
+export const HERE = ["half as far", "here", "twice as far"];
+/** Part of the image that the path and what is around it take, at least, in a standing world. */
+const USUAL = [[-0.8, 0.8], [-0.55, 0.55]];
+/** Image coordinates of more than this are not looked at. */
+export const MOST = 3;
+
+export function drawImage(screen, scene, motion, note) {
+  const { image: view } = screen;
+  const seen = screen.look(scene);
+  const { theme, shown, why } = scene;
+  const moving = view.glide(imageGoal(screen, scene, seen), motion);
+  view.begin(theme);
+  const { width, height } = view;
+  const [c1, c2, scale] = /** @type {number[]} */ (view.at);
+  const x = (y1) => width / 2 + (y1 - c1) * scale;
+  const y = (y2) => height / 2 - seen.up * (y2 - c2) * scale;
+  const on = (place) => /** @type {[number, number]} */ ([x(place[0]), y(place[1])]);
+  view.avoid(width - 44, height - 27, 44, 27);
+  view.plated = view.figure.classList.toggle("filmed", Boolean(seen.film));
+  if (seen.film) drawFilm(screen, view, scene, seen, on);
+  drawDirections(view, seen, theme);
+  const { foe, radius, single } = seen;
+  if (foe && radius) view.hatched((pen) => hatchAround(pen, on(foe), radius * scale, single, width, height));
+  if (seen.simulated) drawStandingThings(screen, view, scene, seen, on);
+  const rows = shown.truth?.length ? shown.truth : shown.runs[0].estimate;
+  view.line(pathOf(rows, shown.width).map(on), theme.ink, { width: 1, alpha: seen.simulated ? 0.15 : 0.35 });
+  const [px, py] = on(seen.y);
+  if (single === 0) view.line([[px, 0], [px, height]], theme.ink, { width: 1, dash: [2, 5] });
+  if (single === 1) view.line([[0, py], [width, py]], theme.ink, { width: 1, dash: [2, 5] });
+  if (scene.why || !seen.film) drawArrows(view, scene, seen, [px, py]);
+  if (foe) {
+    const [fx, fy] = on(foe);
+    view.dot(fx, fy, 9, theme.raised, 0);
+    view.ring(fx, fy, 10, theme.warning, 2.5);
+    view.line([[fx - 5, fy], [fx + 5, fy]], theme.warning, { width: 2 });
+    view.line([[fx, fy - 5], [fx, fy + 5]], theme.warning, { width: 2 });
+    const text = seen.simulated ? "focus of expansion" : "FOE";
+    view.tag({ id: "foe", text, at: [fx, fy], colour: theme.warning, rank: 2, gap: 14 });
+  }
+  const colour = theme.lines[seen.run.order];
+  const [gx, gy] = on(seen.estimate);
+  const ghost = /** @type {const} */ ([within(gx, 12, width - 12), within(gy, 12, height - 12), 11]);
+  if (!why && seen.film) view.ring(...ghost, theme.raised, 6);
+  if (!why) view.ring(...ghost, colour);
+  if (seen.size) view.ring(px, py, seen.size * scale, theme.ink, 2);
+  view.dot(px, py, seen.film ? 3 : 6, theme.ink);
+  if (seen.film && !why) drawDistances(view, scene, seen, [px, py], colour);
+  if (note) view.note(...(note.at === "estimate" ? [gx, gy + 13] : [px, py + 8]), note.text);
+  view.end();
+  const frame = { box: { left: 8, top: 8, width: width - 16, height: height - 16 }, scale, x, y };
+  const { late } = screen.lab;
+  screen.focus.stand(seen.movable ? foe : null, frame, late);
+  screen.point.stand(seen.movable ? seen.y : null, frame, late);
+  return moving;
+}
+
+/** Middle and scale of the image in which the path lies. */
+function imageGoal(screen, { shown }, { simulated, film, foe }) {
+  const { width, height } = screen.image.size ?? { width: 400, height: 300 };
+  if (film) {
+    const [left, right, lower, upper] = film.extent;
+    const scale = Math.min(width / Math.abs(right - left), height / Math.abs(upper - lower));
+    return [(left + right) / 2, (lower + upper) / 2, scale];
+  }
+  const rows = shown.truth?.length ? shown.truth : shown.runs[0].estimate;
+  const around = (c) => (foe ? [foe[c], foe[c]] : [Infinity, -Infinity]);
+  const bounds = simulated ? USUAL.map((pair) => [...pair]) : [0, 1].map(around);
+  for (const place of pathOf(rows, shown.width)) {
+    bounds.forEach((pair, c) => {
+      const value = within(place[c], -MOST, MOST);
+      if (Number.isNaN(value)) return;
+      pair[0] = Math.min(pair[0], value - 0.18);
+      pair[1] = Math.max(pair[1], value + 0.18);
+    });
+  }
+  const scales = bounds.map(([low, high], c) => [width, height][c] / (high - low));
+  return [...bounds.map(([low, high]) => (low + high) / 2), Math.min(...scales) * (simulated ? 1 : 0.9)];
+}
+
+/** The film, and the other tracks that it shows. */
+function drawFilm(screen, view, { shown, now, theme }, seen, on) {
+  const { recorded: { film, begin }, film: { extent: [left, right, lower, upper] } } = seen;
+  const [[west, south], [east, north]] = [on([left, lower]), on([right, upper])];
+  screen.film.draw(view.context, film, begin + now, [west, east, south, north]);
+  seen.tracks = screen.others(shown.settings, now).map(({ name, y }) => ({ name, at: on(y) }));
+  for (const { at } of seen.tracks) view.dot(...at, 3, theme.ink);
+}
+
+/** How far the point is, by the estimate and in truth, or as it was measured otherwise. */
+function drawDistances(view, { shown, theme, now, at: when }, seen, at, colour) {
+  const { other, run, estimate, place, ray, truth } = seen;
+  const deviation = run.deviation && valueBetween(run.deviation, shown.width, 2, when);
+  const text = claimed(ray, estimate[2], deviation);
+  view.tag({ id: "estimate", text, at, colour, rank: 0, gap: 13, towards: [1, -1] });
+  const measured = other && `${other.name} ${metres(valueBetween(other.values, 1, 0, between(other.time, now)))}`;
+  const second = truth ? `true ${metres(Math.hypot(...place))}` : measured;
+  view.tag({ id: "true", text: second, at, colour: theme.ink, rank: 1, gap: 13, towards: [1, 1] });
+}
+
+/** The two directions of the image; the one that is not measured is pale. */
+function drawDirections(view, { single, up }, theme) {
+  const [x, y] = [16, up > 0 ? 56 : 18];
+  [[26, 0, "y1", 1], [0, -26 * up, "y2", 0]].forEach(([dx, dy, text, other]) => {
+    view.context.globalAlpha = single === other ? 0.3 : 1;
+    view.arrow([x, y], [dx, dy], theme.muted, 1.3);
+    view.write(text, x + 1.5 * Number(dx), y + 1.5 * Number(dy), theme.muted);
+  });
+  view.context.globalAlpha = 1;
+  view.avoid(36, 36, 36);
+}
+
+/** Standing things, each with its way of the last second; of one size, which says nothing of their distance. */
+function drawStandingThings(screen, view, scene, { motion, image }, on) {
+  const { theme, now } = scene;
+  const toCamera = screen.standing.toCamera(scene.shown.settings, now);
+  for (const thing of STANDING_THINGS) {
+    const place = apply(toCamera, thing);
+    if (place[2] < 0.6) continue;
+    const there = image(place);
+    const at = on(there);
+    const inside = at[0] > 3 && at[0] < view.width - 3 && at[1] > 3 && at[1] < view.height - 3;
+    if (!inside || (at[0] < 66 && at[1] < 66)) continue;
+    const before = on(image(place.map((value, i) => value - affine(motion.A, motion.b, place)[i])));
+    const length = Math.hypot(before[0] - at[0], before[1] - at[1]);
+    const part = Math.min(1, 50 / length);
+    const from = at.map((value, c) => value + part * (before[c] - value));
+    view.line([from, at], theme.muted, { alpha: 0.4 });
+    view.context.globalAlpha = 0.7;
+    view.context.fillStyle = theme.muted;
+    view.context.beginPath();
+    view.context.arc(at[0], at[1], 3, 0, 7);
+    view.context.fill();
+    view.context.globalAlpha = 1;
+  }
+}
+
+/** How the point moves in the image, and how it would if the estimate were right; or copies at other distances. */
+function drawArrows(view, { theme, why }, { copies, expects, single, run, up }, at) {
+  const [px, py] = at;
+  if (!copies) return;
+  const scale = view.at[2];
+  const flip = (/** @type {number[]} */ [u, v]) => [u, -up * v];
+  const shown = (why ? copies : [copies[1], expects]).filter(Boolean).map(flip);
+  // One scale, whether the copies are shown or not.
+  const all = [...copies, expects].filter(Boolean).map(flip);
+  const longest = Math.max(...all.map((v) => Math.hypot(...v)), 1e-9) * scale;
+  let size = Math.min(4, (Math.min(view.width, view.height) * 0.6) / longest) * scale;
+  for (const velocity of all) {
+    const [u, v] = velocity;
+    const [across, down] = [u < 0 ? px : view.width - px, v < 0 ? py : view.height - py];
+    size = Math.min(size, (across - 14) / Math.abs(u), (down - 14) / Math.abs(v));
+  }
+  // The names of the directions stand in the corner.
+  const inCorner = (/** @type {number[]} */ [u, v]) => px + size * u < 78 && py + size * v < 72;
+  while (all.some(inCorner) && size > 1) size *= 0.9;
+  size = Math.max(size, 0);
+  const tip = (/** @type {number[]} */ [u, v]) => [size * u, size * v];
+  if (why) {
+    shown.forEach((velocity, k) => {
+      const [u, v] = tip(velocity);
+      const length = Math.hypot(u, v);
+      const aside = length > 3 ? ((k - 1) * 11) / length : 0;
+      const from = [px - v * aside, py + u * aside];
+      view.arrow(from, [u, v], theme.ink, 2.5);
+      const end = [from[0] + u, from[1] + v];
+      const text = HERE[k];
+      if (length <= 8 && k === 1)
+        view.tag({ id: "still", text: "no motion at any distance", at: from, colour: theme.ink, rank: 0, gap: 16 });
+      if (length > 8) view.tag({ id: text, text, at: end, colour: theme.ink, rank: k, gap: 5, towards: velocity });
+    });
+    return;
+  }
+  const colour = theme.lines[run.order];
+  const [own, guess] = shown;
+  const parts = (/** @type {number[]} */ [u, v]) => (single === null ? [u, v] : single === 0 ? [u, 0] : [0, v]);
+  const apart = guess ? Math.hypot(own[0] - guess[0], own[1] - guess[1]) * size > 6 : false;
+  const draw = (velocity, tint, width, id, text, towards) => {
+    const [u, v] = tip(velocity);
+    if (single !== null) view.line([[px, py], [px + u, py + v]], tint, { width, alpha: 0.3 });
+    view.arrow([px, py], tip(parts(velocity)), tint, width);
+    if (apart) view.tag({ id, text, at: [px + u, py + v], colour: tint, rank: 3, gap: 8, towards });
+  };
+  if (guess) draw(guess, colour, 5, "expected", "expected", guess);
+  const length = Math.hypot(...own) * size;
+  if (guess && !apart && length > 20) {
+    const at = [px + size * own[0], py + size * own[1]];
+    view.tag({ id: "agree", text: "seen as expected", at, colour, rank: 3, gap: 8, towards: [own[1], -own[0]] });
+  }
+  draw(own, theme.ink, 1.8, "seen", "seen", [own[1], -own[0]]);
+}
+
+function hatchAround(pen, [x, y], radius, single, width, height) {
+  if (single === 0) pen.rect(x - radius, 0, 2 * radius, height);
+  else if (single === 1) pen.rect(0, y - radius, width, 2 * radius);
+  else pen.arc(x, y, radius, 0, 2 * Math.PI);
+}
+
+/** A few hundred image points of rows of states. */
+function pathOf(rows, width) {
+  const every = Math.max(1, Math.floor(rows.length / width / 300));
+  const found = [];
+  for (let k = 0; k < rows.length; k += width * every) found.push([rows[k], rows[k + 1]]);
+  return found;
+}

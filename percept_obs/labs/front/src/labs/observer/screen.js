@@ -1,0 +1,230 @@
+// The first screen of the observer lab: the estimate slides along its ray until the motion that it expects is seen.
+
+import { Film } from "../../draw/film.js";
+import { FirstScreen } from "../../ui/screen.js";
+import { derived } from "../../engine/derived.js";
+import { between, valueBetween, within } from "../../engine/between.js";
+import { affine, imageVelocities } from "../../engine/velocities.js";
+import { motionOf, readTrack, shapeOf, varies } from "./camera.js";
+import { translationTowards } from "./engine.js";
+import { QUESTIONS } from "./questions.js";
+import { apply, flow, isRigid, Standing, wayOf } from "./standing.js";
+import { coefficientsAt, placesOf } from "./old_scene.js";
+import { drawImage, MOST } from "./image.js";
+import { chartOf, controlsOf, radiusOf, sentence } from "./told.js";
+import { drawWorld } from "./world.js";
+
+const CAPTIONS = { image: "What the camera sees", world: "The world from above", axis: "Distance over time" };
+/** Where the map is not level, but along the first view. */
+const OF_FILMS = { world: "From above the camera" };
+/** Pixels within which the focus of expansion clicks onto the point. */
+const CLICK = 7;
+/** Pixels within which a press on the film is meant for a track. */
+const NEAR = 24;
+/** Least distance of a point, in metres. */
+const [NEAREST, FARTHEST] = [0.8, 200];
+
+export class ObserverFirst extends FirstScreen {
+  /** What is seen at the time that was drawn last, in metres before the camera. */
+  seen = /** @type {any} */ (null);
+
+  constructor(lab) {
+    const recorded = lab.settings.scenario in lab.model.recordings;
+    // The questions are about a drive, whose settings they change.
+    super(lab, recorded ? { ...CAPTIONS, ...OF_FILMS } : CAPTIONS, controlsOf(lab), recorded ? [] : QUESTIONS);
+    this.standing = new Standing();
+    this.film = new Film(lab);
+    this.image.figure.addEventListener("click", (event) => this.pick(event));
+    this.focus = this.handle(this.image, {
+      ...{ name: "first foe", label: "Focus of expansion, where the camera heads" },
+      onMove: (place) => this.steer(this.clicked(place)),
+    });
+    this.point = this.handle(this.image, {
+      ...{ name: "first point", label: "The point, its direction" },
+      onMove: (place) => this.aim(place),
+    });
+    this.far = this.handle(this.world, {
+      ...{ name: "first distance", label: "The point, its distance", nudge: 0.25 },
+      onMove: (place) => this.reach(place),
+    });
+  }
+
+  renew() {
+    this.standing.begin();
+  }
+
+  // What a hand does: it moves what it sees now, so the present picture stays, and the past swings.
+
+  /** Settings of the same present with another motion, or with the point elsewhere. */
+  moveTo(b, place) {
+    const { settings } = this.lab;
+    const { now } = /** @type {any} */ (this.scene);
+    const motion = { A: settings.A, b };
+    const X0 = apply(flow(motion, -now), place);
+    if (!(X0[2] > 0.4) || X0.some((value) => !(Math.abs(value) < 1000))) return;
+    this.standing.keep(settings, now);
+    this.lab.change({ b, X0, start: this.startFor(X0) });
+  }
+
+  /** The start of the estimate at the same distance on the ray of another point. */
+  startFor(X0) {
+    const { settings } = this.lab;
+    if (settings.start.mode !== "chosen") return settings.start;
+    const { functions } = this.seen;
+    const shape = shapeOf(settings);
+    const lengthOf = (y1, y2) => Math.hypot(...functions.ray([y1, y2, ...shape], new Float64Array(3)));
+    const [z1, z2, inverse] = settings.start.values;
+    const [y1, y2] = functions.project([...X0, ...shape], new Float64Array(3));
+    return { ...settings.start, values: [y1, y2, (inverse * lengthOf(y1, y2)) / lengthOf(z1, z2)] };
+  }
+
+  clicked(place) {
+    const { y } = this.seen;
+    const apart = /** @type {number[]} */ (this.image.at)[2] * Math.hypot(place[0] - y[0], place[1] - y[1]);
+    return apart < CLICK ? y : place;
+  }
+
+  steer(place) {
+    const { settings } = this.lab;
+    const aim = place.map((value) => within(value, -MOST, MOST));
+    const b = translationTowards(aim, settings, this.seen.functions);
+    const speed = Math.hypot(...settings.b) / Math.hypot(...b);
+    this.moveTo(b.map((value) => speed * value), this.seen.place);
+  }
+
+  aim(place) {
+    const { settings } = this.lab;
+    const ray = Array.from(this.seen.functions.ray([...place, ...shapeOf(settings)], new Float64Array(3)));
+    const length = Math.hypot(...this.seen.place) / Math.hypot(...ray);
+    this.moveTo(settings.b, ray.map((value) => length * value));
+  }
+
+  /** Put the point at the place on its ray that is nearest to a place of the map. */
+  reach([x, z]) {
+    const { camera, point, place } = this.seen;
+    const along = [point[0] - camera[0], point[2] - camera[2]];
+    const part = ((x - camera[0]) * along[0] + (z - camera[2]) * along[1]) / Math.hypot(...along) ** 2;
+    const distance = Math.hypot(...place);
+    const wanted = within(part * distance, NEAREST, FARTHEST);
+    this.moveTo(this.lab.settings.b, place.map((value) => (value * wanted) / distance));
+  }
+
+  // Tracks of a film.
+
+  /** The other tracks of the film that are seen at a time of this one, in the image. */
+  others({ scenario }, now) {
+    const { recordings } = this.lab.model;
+    const { film, begin } = recordings[scenario];
+    const found = Object.entries(recordings).flatMap(([name, other]) => {
+      const when = begin + now - other.begin;
+      const there = other.film === film && name !== scenario && when >= 0 && when <= other.time.at(-1);
+      return there ? [{ name, y: sampleOf(other, when) }] : [];
+    });
+    return found.filter(({ y }) => !y.some(Number.isNaN));
+  }
+
+  /** Follow another track from the same frame on. */
+  choose(name) {
+    const { lab } = this;
+    const { recordings } = lab.model;
+    this.touch();
+    this.setWhy(false);
+    lab.state.cursor = this.clock.present() + recordings[lab.settings.scenario].begin - recordings[name].begin;
+    lab.chooseScenario(name);
+  }
+
+  /** Follow the track that is pressed. */
+  pick({ clientX, clientY, target }) {
+    const { left, top } = this.image.figure.getBoundingClientRect();
+    const apart = ({ at: [x, y] }) => Math.hypot(x - (clientX - left), y - (clientY - top));
+    // Nothing is seen before the first picture, and where settings are refused.
+    const tracks = this.seen?.tracks ?? [];
+    const [nearest] = tracks.toSorted((one, other) => apart(one) - apart(other));
+    if (nearest && apart(nearest) < NEAR && !target.closest("button")) this.choose(nearest.name);
+  }
+
+  // What is seen at a time.
+
+  /** From what the camera sees at a time to a world that stands, if there is one. */
+  worldOf(settings) {
+    const { lab, standing } = this;
+    const recorded = lab.model.recordings[settings.scenario];
+    if (recorded) return derived(recorded, "way", () => wayOf(motionOf(lab.model, recorded)));
+    if (!isRigid(settings.A) || varies(settings, lab.model)) return null;
+    return (time) => standing.toWorld(settings, time);
+  }
+
+  /** Places in metres before the camera: of the point, of the estimate, and functions of the settings. */
+  look(scene) {
+    const { lab } = this;
+    const { shown, at, now } = scene;
+    const { settings, truth, width } = shown;
+    const [run] = shown.runs;
+    const functions = lab.kernels.of(settings);
+    const shape = shapeOf(settings);
+    const placeOf = placesOf(lab, shown);
+    const stateOf = (rows) => [0, 1, 2].map((c) => valueBetween(rows, width, c, at));
+    const state = truth?.length ? stateOf(truth) : null;
+    const estimate = stateOf(run.estimate);
+    const recorded = lab.model.recordings[settings.scenario];
+    const sample = recorded ? sampleOf(recorded, now) : [NaN];
+    const y = state ?? (sample.some(Number.isNaN) ? estimate : sample);
+    const motion = coefficientsAt(lab, shown, functions, at);
+    const image = (copy) => Array.from(functions.project([...copy, ...shape], new Float64Array(3)));
+    const speedsOf = (place, { A, b }) => imageVelocities(place, (copy) => affine(A, b, copy), image);
+    const place = placeOf(state ?? estimate);
+    const guess = estimate[2] > 1e-4 ? placeOf(estimate) : null;
+    const expected = guess && placeOf([y[0], y[1], estimate[2]]);
+    const toWorld = this.worldOf(settings);
+    const world = toWorld?.(now);
+    const inWorld = (where) => (world ? apply(world, where) : where);
+    const simulated = Boolean(world) && !recorded;
+    const film = this.film.films[recorded?.film] ?? null;
+    const rayOf = (seen) => Math.hypot(...functions.ray([seen[0], seen[1], ...shape], new Float64Array(3)));
+    const other = recorded?.measured && derived(recorded, "other", () => otherOf(recorded, rayOf));
+    this.whyButton.hidden = !state;
+    this.seen = {
+      ...{ state, estimate, y: y.slice(0, 2), motion, image, place, guess, run, inWorld, functions },
+      ...{ toWorld, simulated, recorded, other, ray: rayOf(estimate), tracks: [] },
+      ...{ film, up: film && film.extent[2] > film.extent[3] ? -1 : 1 },
+      ...{ camera: inWorld([0, 0, 0]), point: inWorld(place), truth: Boolean(state) },
+      copies: state && speedsOf(place, motion),
+      expects: expected && speedsOf(expected, settings.believed ?? motion)[1],
+      movable: simulated || (state && !varies(settings, lab.model)),
+      foe: shown.foe,
+      radius: radiusOf(shown, shown.radius * y[2]),
+      size: shown.radius * y[2],
+      single: shown.measured.length === 1 ? shown.measured[0] : null,
+    };
+    return this.seen;
+  }
+
+  drawImage(scene, motion, note) {
+    return drawImage(this, scene, motion, note);
+  }
+
+  drawWorld(scene, motion, note) {
+    return drawWorld(this, scene, motion, note);
+  }
+
+  chartOf(scene) {
+    return chartOf(this, scene);
+  }
+
+  sentence(scene) {
+    return sentence(this, scene);
+  }
+}
+
+/** Where a recording sees its point at a time. */
+function sampleOf(recorded, now) {
+  const { time, outputs } = derived(recorded, "track", () => readTrack(recorded));
+  return [0, 1].map((c) => valueBetween(outputs, 2, c, between(time, now)));
+}
+
+/** Another measurement of a recording's distance: its name, and metres along the ray at times. */
+function otherOf(recorded, rayOf) {
+  const { time, outputs } = derived(recorded, "track", () => readTrack(recorded));
+  const [name, measured] = recorded.measured;
+  return { name, time, values: time.map((_, k) => (measured[k] ?? NaN) * rayOf(outputs.subarray(2 * k))) };
+}

@@ -1,0 +1,145 @@
+// The first screen of the lab of many points: a body's estimate is pulled, mark by mark, on to the rays of the marks.
+
+import { FirstScreen } from "../../ui/screen.js";
+import { valueBetween, within } from "../../engine/between.js";
+import { Body } from "./body.js";
+import { PointsEngine } from "./engine.js";
+import { QUESTIONS } from "./questions.js";
+import { drawImage } from "./image.js";
+import { chartOf, controlsOf, meanErrorOf, sentenceOf } from "./told.js";
+import { drawWorld } from "./world.js";
+
+const CAPTIONS = { image: "What the camera sees", world: "The world from above", axis: "How far the estimate is off" };
+/** Marks in sight that a hand may move and hide. */
+const IN_HAND = 3;
+/** Shares of the given error with which the estimate may start. */
+const [LEAST_ERROR, MOST_ERROR] = [0.5, 4];
+/** How much the copy of the first look grows and shrinks, and milliseconds of a swing. */
+const [SWING, SWINGS] = [0.45, 2600];
+/** What no picture shows may move no point, as an origin of its own does. */
+const LEAST_REACH = 1e-6;
+
+export class PointsFirst extends FirstScreen {
+  /** Amounts of the directions that no picture shows, as a hand has dragged the copy. */
+  amounts = /** @type {number[] | null} */ (null);
+  looked = 0;
+
+  constructor(lab) {
+    super(lab, CAPTIONS, controlsOf(lab), QUESTIONS);
+    this.clock.firstLook = SWINGS;
+    this.engine = new PointsEngine(lab.model);
+    this.marks = Array.from({ length: IN_HAND }, (_, k) =>
+      this.handle(this.image, {
+        ...{ name: `first mark ${k + 1}`, label: `Mark ${k + 1}; press it to hide it` },
+        onMove: (place) => this.aim(k, place),
+        onPress: () => this.hide(k),
+      }),
+    );
+    this.begin = this.handle(this.world, {
+      ...{ name: "first estimate", label: "The estimate's start", nudge: 0.1 },
+      onMove: (place) => this.startAt(place),
+    });
+    this.twin = this.handle(this.world, {
+      ...{ name: "first copy", label: "A copy with the same pictures", nudge: 0.25 },
+      onMove: (place) => this.slide(place),
+    });
+  }
+
+  renew() {
+    this.amounts = null;
+  }
+
+  // What a hand does.
+
+  /** Move a mark of the body to a direction, at the depth that it has now; none of a body that is drawn late. */
+  aim(k, [y1, y2]) {
+    const { body, places } = this.seen;
+    if (places.length !== this.lab.settings.points.length) return;
+    const depth = places[k][2];
+    this.lab.change({ points: body.movedTo(k, [y1 * depth, y2 * depth, depth]) });
+  }
+
+  /** Hide a mark from now on, or show it; at both ends of the time, for all of it. */
+  hide(k) {
+    const { hidden, duration } = this.lab.settings;
+    if (k >= hidden.length) return;
+    const now = this.clock.present();
+    const whole = now <= this.clock.start || now >= this.clock.end;
+    const from = whole ? 0 : now;
+    const away = hidden[k] && hidden[k][0] <= now && now < hidden[k][1];
+    const times = away ? (from > hidden[k][0] ? [hidden[k][0], from] : null) : [from, duration + 1];
+    this.touch();
+    this.renew();
+    this.lab.change({ hidden: hidden.with(k, times) }, true);
+  }
+
+  /** Let the estimate start so that its first mark is as near to a place as its error's direction allows. */
+  startAt([x, z]) {
+    const [error] = [this.lab.settings.error];
+    const [from, to] = [this.seen.inWorld[0], this.seen.foundInWorld[0]];
+    const way = [to[0] - from[0], to[2] - from[2]];
+    const part = ((x - from[0]) * way[0] + (z - from[2]) * way[1]) / Math.hypot(...way) ** 2;
+    if (Number.isFinite(part)) this.lab.change({ error: within(part * error, LEAST_ERROR, MOST_ERROR) });
+  }
+
+  slide(place) {
+    this.amounts = this.seen.body.amountsTo(this.seen.held, place);
+    this.lab.redraw();
+  }
+
+  // What is seen at a time.
+
+  look(scene) {
+    const { lab } = this;
+    const { shown, at, now, secret, why } = scene;
+    const body = new Body(this.engine, lab.model, shown, lab.kernels.of(shown.settings), at);
+    const places = body.places(body.state(shown.truth));
+    const found = body.places(body.state(shown.estimate));
+    const world = (list) => list.map((place) => body.toWorld(place));
+    const hidden = places.map((_, k) => Number.isNaN(shown.outputs[2 * (at.sample * shown.points + k)]));
+    const untouched = !this.questions.open && !this.moved && !this.clock.playing;
+    const prelude = secret && !this.left && now <= this.clock.start && untouched;
+    if (!prelude) this.left = true;
+    const reach = (k) => body.movable(k).reduce((sum, [x, z]) => sum + x * x + z * z, 0);
+    const held = places.map((_, k) => k).sort((one, other) => reach(other) - reach(one))[0];
+    let copy = /** @type {number[][] | null} */ (null);
+    if (prelude) {
+      // Nothing moves before somebody looks.
+      if (!this.clock.begun) this.looked = performance.now();
+      this.looked ||= performance.now();
+      const size = Math.exp(SWING * Math.sin((2 * Math.PI * (performance.now() - this.looked)) / SWINGS));
+      copy = places.map((place) => place.map((value) => size * value));
+    } else if (reach(held) > LEAST_REACH && !secret && !why) {
+      if (this.amounts?.length !== body.unseen.length) this.amounts = body.larger();
+      copy = body.copy(this.amounts);
+    }
+    this.seen = {
+      ...{ body, places, found, hidden, prelude, copy, held },
+      ...{ inWorld: world(places), foundInWorld: world(found), copyInWorld: copy && world(copy) },
+      off: valueBetween(meanErrorOf(shown), 1, 0, at),
+      sees: !prelude && !why,
+    };
+    scene.body = body;
+    return this.seen;
+  }
+
+  seen = /** @type {any} */ (null);
+  /** True once the copy of the first look was left behind. */
+  left = false;
+
+  drawImage(scene, motion, note) {
+    return drawImage(this, scene, motion, note);
+  }
+
+  drawWorld(scene, motion, note) {
+    return drawWorld(this, scene, motion, note);
+  }
+
+  chartOf(scene) {
+    return chartOf(scene);
+  }
+
+  sentence(scene) {
+    return sentenceOf(scene, this.seen, this.moved);
+  }
+}

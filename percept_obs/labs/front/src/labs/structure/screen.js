@@ -1,0 +1,336 @@
+// The first screen of the structure lab: a family of worlds makes one film, and what one knows picks one of them.
+
+import { tick } from "../../ui/handy.js";
+import { FirstScreen } from "../../ui/screen.js";
+import { within } from "../../engine/between.js";
+import { isTyped } from "../../engine/typed.js";
+import { element } from "../../ui/dom.js";
+import { KEPT } from "../../draw/looks.js";
+import { isSampled } from "./camera.js";
+import { QUESTIONS } from "./questions.js";
+import { estimatedSpeeds, knowledgeOf, ratiosOf, TRUE, unknownOf, Worlds } from "./worlds.js";
+import { drawMap, placeOfMap } from "./map.js";
+import { carAside, HIGH, metres, speed } from "./marks.js";
+
+const CAPTIONS = { image: "Three films", world: "From above", axis: "Estimate over truth" };
+/** Sizes of the other worlds at the start; one is moved by hand, between two bounds, as is its story. */
+const [HALF, TWICE] = [0.5, 2];
+const BOUNDS = { size: [0.3, 2.5], share: [0, 1.5] };
+/** Seconds between places of the past, and pixels below the pictures that the caption needs. */
+const [EVERY, FOOT] = [1, 30];
+/** Part of the run before which a way is too short to be dragged, and of its depth that an object keeps at least. */
+const [SHORT, IN_FRONT] = [0.15, 0.1];
+/** Seconds between gaps that are hatched as one, so that noise does not tear them. */
+const TORN = 0.1;
+/** Numbers of the reasons for gaps, and their words; the first is that of a refused choice. */
+const [NEARLY, LEFT_OVER] = [1, 2];
+const GAPS = ["cannot be told", "speed near zero", "no estimate yet"];
+const TOO_FAR = "too far to tell";
+
+export class StructureFirst extends FirstScreen {
+  /** Size of the other world that a hand may take, and the camera's share of the motion in it. */
+  size = TWICE;
+  share = 0.5;
+  worlds = /** @type {Worlds} */ (/** @type {any} */ (null));
+  /** What is seen, and can be told, at the time that was drawn last. */
+  seen = /** @type {any} */ (null);
+
+  constructor(lab) {
+    super(lab, CAPTIONS, ticksOf(lab), QUESTIONS);
+    this.body.classList.add("of-worlds");
+    this.body.querySelector(".handy")?.prepend(element("span", {}, "Known:"));
+    this.other = this.handle(this.world, {
+      ...{ name: "first world", label: "Another world that makes this film", nudge: 0.25 },
+      onMove: (place) => this.scale(place),
+    });
+    this.camera = this.handle(this.world, {
+      ...{ name: "first camera", label: "The camera, where it has come to", nudge: 0.25 },
+      onMove: (place) => this.drive(place),
+    });
+  }
+
+  renew() {
+    [this.size, this.share] = [TWICE, 0.5];
+  }
+
+  // What a hand does.
+
+  /** Give the other world the size, or the story, with which its object stands nearest to a place of the map. */
+  scale([x, z]) {
+    const { now } = /** @type {any} */ (this.scene);
+    const name = this.stories ? "share" : "size";
+    const [from, to] = [0, 1].map((value) => this.worlds.places({ ...this.others[1], [name]: value }, now).object);
+    const way = [to[0] - from[0], to[2] - from[2]];
+    const part = ((x - from[0]) * way[0] + (z - from[2]) * way[1]) / Math.hypot(...way) ** 2;
+    if (!Number.isFinite(part)) return;
+    this[name] = within(part, BOUNDS[name][0], BOUNDS[name][1]);
+    this.lab.redraw();
+  }
+
+  /** Let the camera have come to a place of the map by now: its velocity changes, and the object stays. */
+  drive([x, z]) {
+    const { now, end } = /** @type {any} */ (this.scene);
+    const { start, shown } = this.worlds;
+    const way = this.worlds.way(now);
+    const [first, last] = [start, end].map((time) => this.worlds.before(time)[2]);
+    const change = [x - way[0], 0, z - way[2]].map((value) => value / (now - start));
+    change[2] = Math.min(change[2], (last - IN_FRONT * first) / (end - start));
+    this.lab.change({ v_c: shown.settings.v_c.map((value, k) => Number((value + change[k]).toFixed(3))) });
+  }
+
+  // What is seen at a time.
+
+  /** True where the size is known and both speeds along an axis are open: one film, many stories. */
+  get stories() {
+    const { known } = this.worlds;
+    return known.size && known.story.some(Boolean);
+  }
+
+  /** The two worlds beside the true one. */
+  get others() {
+    const { size, share, stories } = this;
+    return stories ? [{ size: 1, share: 0 }, { size: 1, share }] : [{ size: HALF, share: null }, { size, share: null }];
+  }
+
+  look(scene) {
+    const { lab } = this;
+    const { shown, now, at } = scene;
+    if (this.worlds?.shown !== shown) {
+      const functions = lab.kernels.of(shown.settings);
+      const { camera } = lab.results.engines[0];
+      this.worlds = new Worlds(shown, (times) => camera.velocities(shown.settings, functions, times));
+    }
+    scene.worlds = this.worlds;
+    const { known } = this.worlds;
+    const [run = null] = shown.runs;
+    const ratios = run && ratiosOf(this.worlds, shown, run);
+    const gaps = joined(run?.gaps ?? []);
+    const why = gaps.find(([begin, end]) => begin <= now && now <= end)?.[2] ?? 0;
+    const settled = run ? foundAt(run, shown) : Infinity;
+    this.seen = {
+      ...{ run, ratios, known, gaps, why, settled },
+      ratio: run && !why ? ratios[at.sample] : NaN,
+      estimate: run && !why && known.size ? estimatedSpeeds(this.worlds, shown, run, at) : null,
+      told: Boolean(run),
+      free: Boolean(shown.refusal) && !known.nothing,
+      found: settled <= now && !why,
+      reading: this.worlds.reading(now),
+    };
+    return this.seen;
+  }
+
+  /** What another world would need, and whether what is known contradicts that; null where nothing does. */
+  against(world) {
+    const { known, reading, told, why } = this.seen;
+    if (!told && !known.nothing) return null;
+    if (known.size) return { text: "", off: world.size !== 1 };
+    if (!reading) return null;
+    const need = speed(world.size * reading.value);
+    return { text: `needs ${need}`, off: why !== NEARLY && need !== speed(reading.value) };
+  }
+
+  /** A world's name. */
+  nameOf(world) {
+    if (!this.stories) return world === TRUE ? "true" : (TIMES[world.size] ?? `×${world.size.toFixed(1)}`);
+    const { camera, object } = this.worlds.speeds(world, this.scene?.now ?? 0);
+    const stands = (velocity) => Number(speed(Math.hypot(...velocity))) === 0;
+    const who = stands(camera) ? "camera stands" : stands(object) ? "car rests" : "both move";
+    return world === TRUE ? `true: ${who}` : who;
+  }
+
+  /** A world's name with its length, what is read in it, and whether what is known contradicts that. */
+  readIn(world, now) {
+    const { known, reading } = this.seen;
+    const { camera, object } = this.worlds.speeds(world, now);
+    const [driven, drives] = [camera, object].map((value) => speed(Math.hypot(...value)));
+    const against = this.stories ? null : this.against(world);
+    const name = `${this.nameOf(world)}${this.stories ? "" : `: ${metres(world.size * this.worlds.length)} long`}`;
+    return [name, ...this.readings({ known, reading, against, driven, drives }, world)];
+  }
+
+  readings({ known, reading, against, driven, drives }, world) {
+    if (!against && (this.stories || !known.rests)) return [`camera ${driven}, car ${drives} m/s`, false];
+    if (!against) return [`camera ${driven} m/s`, false];
+    if (known.size) return [world === TRUE ? "as known" : "not as known", against.off];
+    const verb = world === TRUE ? `reads ${speed(reading.value)}` : against.text;
+    return [`camera ${verb} m/s${reading.along}`, against.off];
+  }
+
+  // The film: a strip for each world, and nothing but the words differs.
+
+  drawImage(scene, motion, _note) {
+    const { image: view } = this;
+    const { theme, now, shown } = scene;
+    this.scene = scene;
+    this.look(scene);
+    const moving = view.glide(this.imageGoal(scene), motion);
+    view.begin(theme);
+    const { width, height, context: pen } = view;
+    const [c1, c2, scale] = /** @type {number[]} */ (view.at);
+    const high = (height - FOOT) / 3;
+    [this.others[0], TRUE, this.others[1]].forEach((world, k) => {
+      const draw = (time, colour, look) => {
+        const [y1, y2, length] = this.worlds.image(world, time);
+        const at = [width / 2 + (y1 - c1) * scale, high * (k + 0.5) + 12 - (y2 - c2) * scale];
+        carAside(view, at, length * scale, colour, look);
+      };
+      pen.save();
+      pen.beginPath();
+      pen.rect(0, high * k, width, high);
+      pen.clip();
+      const past = { full: false, alpha: 0.5 };
+      for (let time = shown.time[0]; time < now - 0.4 * EVERY; time += EVERY) draw(time, theme.muted, past);
+      draw(now, world === TRUE ? theme.ink : theme.muted);
+      pen.restore();
+      view.line([[0, high * (k + 1)], [width, high * (k + 1)]], theme.paper, { width: 3 });
+      const [name, text, off] = this.readIn(world, now);
+      view.write(name, 10, high * k + 13, theme.ink, "left");
+      view.write(text, width - 10, high * k + 13, off ? theme.warning : theme.ink, "right");
+    });
+    view.end();
+    return moving;
+  }
+
+  /** Middle and scale of the image in which the whole film lies. */
+  imageGoal({ shown }) {
+    const { image, time } = shown;
+    const bounds = [[Infinity, -Infinity], [Infinity, -Infinity]];
+    let longest = 0;
+    for (let k = 0; k < time.length; k += Math.ceil(time.length / 100)) {
+      const [y1, y2, length] = image.subarray(3 * k, 3 * k + 3);
+      longest = Math.max(longest, length);
+      [y1, y2].forEach((value, c) => {
+        const half = (c ? HIGH : 1) * (length / 2);
+        bounds[c] = [Math.min(bounds[c][0], value - half), Math.max(bounds[c][1], value + half)];
+      });
+    }
+    const { width, height } = this.image.size ?? { width: 360, height: 300 };
+    const [across, up] = bounds.map(([low, high]) => Math.max(high - low, 1e-9));
+    const scale = Math.min((width - 24) / across, ((height - FOOT) / 3 - 26) / Math.max(up, HIGH * longest));
+    return [(bounds[0][0] + bounds[0][1]) / 2, (bounds[1][0] + bounds[1][1]) / 2, Math.max(scale, 1 / across)];
+  }
+
+  // The worlds from above, one inside of the other: all cameras begin at one place.
+
+  drawWorld(scene, motion, note) {
+    const { world: view, seen, worlds } = this;
+    const { now, end } = scene;
+    const moving = view.glide(placeOfMap(this, scene), motion);
+    const frame = drawMap(view, this, scene, note);
+    const { late, settings } = this.lab;
+    const grip = (place) => [place[0], place[2]];
+    this.other.stand(seen.free ? grip(worlds.places(this.others[1], now).object) : null, frame, late);
+    const fixed = worlds.turns || isTyped(settings) || isSampled(settings) || this.questions.asking;
+    const long = now - worlds.start > SHORT * (end - worlds.start);
+    this.camera.stand(long && !fixed ? grip(worlds.places(TRUE, now).camera) : null, frame, late);
+    return moving;
+  }
+
+  // Estimate over truth.
+
+  chartOf(scene) {
+    const { shown, ghost, theme, secret, now, end } = scene;
+    const { run, ratios, settled, known, free } = this.seen;
+    const { time } = shown;
+    const quantity = known.size ? "speed" : "distance";
+    const times = Float64Array.from({ length: 41 }, (_, k) => time[0] + ((end - time[0]) * k) / 40);
+    const level = (id, value, colour, more) => ({ id, time: times, values: times.map(() => value), colour, ...more });
+    const sizes = this.others.map((world) => (this.stories ? this.speedOf(world, now) : world.size));
+    const colour = run ? theme.lines[run.order] : theme.ink;
+    const from = run ? ratios.findIndex(Number.isFinite) : -1;
+    const begun = from >= 0 && (!secret || time[from] <= now);
+    const found = Number.isFinite(settled) && (!secret || settled <= now);
+    const estimated = () => ({ time: time.subarray(from), values: ratios.subarray(from), colour, width: 3, secret });
+    return {
+      ...{ end, unit: "", mark: (value) => (value ? `×${value}` : "0"), spans: this.spansOf(scene) },
+      high: Math.max(2.4, free ? 1.15 * Math.max(...sizes) : 0),
+      title: free ? "" : `${quantity} ÷ true`,
+      lines: [
+        ...(ghost ? [this.keptLine(scene)] : []),
+        ...(free ? sizes.map((value, k) => level(`other ${k}`, value, theme.muted, { width: 2.5, secret })) : []),
+        ...(begun ? [{ id: "estimate", text: "estimate", ...estimated() }] : []),
+        level("true", 1, theme.ink, { text: "true", width: 1.6 }),
+      ],
+      found: found ? { time: settled, value: 1, text: `found ${settled.toFixed(1)} s`, colour } : null,
+    };
+  }
+
+  keptLine({ ghost, kept, theme, secret }) {
+    const values = ratiosOf(this.worlds, ghost, ghost.runs[0]).map((value) => within(value, -1, 9));
+    return { id: "kept", text: kept, time: ghost.time, values, colour: theme.kept, dash: KEPT, secret };
+  }
+
+  /** A world's speed of the camera over the true one. */
+  speedOf(world, now) {
+    const [own, right] = [world, TRUE].map((each) => Math.hypot(...this.worlds.speeds(each, now).camera));
+    return right > 0 ? own / right : 0;
+  }
+
+  /** Times in which nothing can be told, as far as they were played. */
+  spansOf({ shown, secret, now, end }) {
+    const { free, gaps, known } = this.seen;
+    const last = secret ? now : end;
+    return (free ? [[shown.time[0], end, 0]] : gaps).flatMap(([begin, until, why]) => {
+      const span = { begin, end: Math.min(until, last) };
+      const who = free && known.size ? "who moves " : "";
+      const text = why === NEARLY && known.size ? TOO_FAR : `${who}${GAPS[why]}`;
+      const wide = (span.end - begin) * this.chart.width > 7 * text.length * (end - shown.time[0]);
+      return begin < last ? [{ ...span, text: wide ? text : "" }] : [];
+    });
+  }
+
+  sentence({ now, end, why, shown }) {
+    const { known, run, free, found, estimate, reading, ...seen } = this.seen;
+    if (why && this.stories) return "In each story the car is in the same direction, as large: the same film.";
+    if (why) return "Ways and distances grow together, so all directions stay: the same film.";
+    if (known.nothing) return "All of it is known: nothing is left to estimate.";
+    if (free && this.stories) return "Cannot be told: who moves. The film shows the difference of two speeds only.";
+    if (free && !known.rests) return "Cannot be told: how large and far the car is, for it may drive itself.";
+    if (free && now < (shown.time[0] + end) / 2) return "Is it a small car near, or a large one far?";
+    if (free && this.moved) return "A whole family of worlds makes this film: small, near, slow or large, far, fast.";
+    if (free) return "The film cannot tell which. Tick a speed.";
+    if (run.divergedAt !== null) return `The estimate left every bound after ${run.divergedAt.toFixed(1)} s.`;
+    if (seen.why === NEARLY && known.size) return "The car is so far that noise would make the most of an estimate.";
+    if (seen.why === NEARLY) return "The known speed is near zero, in every world: no estimate now.";
+    if (seen.why === LEFT_OVER) return "No estimate yet: what the observer began with still counts for too much.";
+    if (found && estimate && !known.rests) return "Found: the car's own speed, as its size and the camera's are known.";
+    if (found && estimate) return "Found: with the size known, the film tells the camera's speed.";
+    if (found) return `Found: only the true world needs the ${speed(reading?.value ?? 0)} m/s that are read.`;
+    if (estimate) return "The size is known, so the film tells a speed.";
+    return "Each world needs another speed. The estimate slides to the one that is read.";
+  }
+}
+
+/** Boxes for what is known, which decide what the observer seeks. */
+function ticksOf(lab) {
+  const now = () => knowledgeOf(lab.settings.unknown);
+  const box = (name, before, label) =>
+    tick({
+      ...{ name: `first ${name}`, before, label },
+      get: () => now()[name],
+      set: (on) => lab.first.replay({ unknown: unknownOf({ ...now(), [name]: on }, lab.model.quantities) }),
+    });
+  const speeds = [box("ahead", "camera's speed", "ahead"), box("sideways", "", "sideways")];
+  return [box("rests", "car", "rests"), box("size", "its", "size"), ...speeds];
+}
+
+/** Time from which on every estimate that there is lies within the tolerance. */
+function foundAt({ error }, { time, tolerance }) {
+  const late = error.findLastIndex((value) => value > tolerance) + 1;
+  const first = error.findIndex((value, k) => k >= late && !Number.isNaN(value));
+  return first < 0 ? Infinity : time[first];
+}
+
+/** Gaps without the moments between them. */
+function joined(gaps) {
+  const found = [];
+  for (const [begin, end, why] of gaps) {
+    const last = found.at(-1);
+    if (last && last[2] === why && begin - last[1] < TORN) last[1] = end;
+    else if (end - begin > TORN / 2) found.push([begin, end, why]);
+  }
+  return found;
+}
+
+const TIMES = { [HALF]: "half", [TWICE]: "twice" };
+/** Speeds and lengths as they are written. */

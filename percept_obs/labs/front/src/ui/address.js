@@ -1,0 +1,98 @@
+// @ts-check
+// A lab's part of the page's address, where the page opens without Python: read when the page opens or its address
+// changes, and written when the hand rests; it replaces the address, so that "back" leads to the page before.
+
+import { BadAddress, fragmentOf, isTooLong, MOST, partsOf, settingsIn, textOf } from "../state/address.js";
+import { same } from "../state/settings.js";
+
+/** Milliseconds between changes of the address: browsers refuse more than a hundred in half a minute. */
+const SELDOM = 500;
+const UNCHANGED = "The lab is as it would be without the link.";
+
+export class Address {
+  /** @param {{name: string, names: string[]}} place  the lab's name in the address, and those of all the page's labs */
+  constructor(lab, place) {
+    this.lab = lab;
+    this.name = place.name;
+    this.names = place.names;
+    /** The settings in the address; those that the lab opens with need not be there. */
+    this.written = lab.settings;
+    this.timer = /** @type {any} */ (null);
+    this.listener = () => this.follow();
+    window.addEventListener("hashchange", this.listener);
+  }
+
+  /** Take what the address says of this lab; what cannot be taken leaves the lab as it is. */
+  async follow() {
+    const { lab, name, names } = this;
+    const { hash } = window.location;
+    clearTimeout(this.timer);
+    this.timer = null;
+    try {
+      const parts = partsOf(hash);
+      const mine = parts.get(name);
+      if (mine === undefined) {
+        // The first lab tells of an address that is about none of them.
+        if (names[0] === name) this.refuseStranger(hash, [...parts.keys()]);
+        return;
+      }
+      const settings = settingsIn(mine, lab.model);
+      for (const each of lab.wanted(settings)) await this.refuse(each);
+      if (lab.closed || window.location.hash !== hash) return;
+      lab.visit(settings);
+      if (parts.keys().next().value === name) lab.view.root.scrollIntoView({ block: "nearest" });
+    } catch (error) {
+      if (!(error instanceof BadAddress)) return lab.fail(error);
+      const why = error.message.replace(/\.$/, "");
+      lab.view.notice(`The link in this page's address is not followed: ${why}. ${UNCHANGED}`);
+    }
+  }
+
+  refuseStranger(hash, found) {
+    const { names } = this;
+    if (isTooLong(hash)) throw new BadAddress(`it has ${hash.length} letters, and a lab reads ${MOST} at most`);
+    if (!found.length || found.some((name) => names.includes(name))) return;
+    throw new BadAddress(`it is about "${found[0].slice(0, 40)}", and this page has ${names.join(", ")}`);
+  }
+
+  /** Refuse settings that do not go together, or that the page has no functions for. */
+  async refuse(settings) {
+    const { lab } = this;
+    const why = lab.fitted(settings).why || lab.clash(settings);
+    if (why) throw new BadAddress(why);
+    const lacking = lab.kernels.needed(settings).find(({ refusal }) => refusal);
+    if (lacking) throw new BadAddress(lacking.refusal);
+    await lab.kernels.prepare(settings);
+    for (const [observer, gains] of Object.entries(settings.gains ?? {})) {
+      const standard = lab.model.standard.gains[observer];
+      const allowed = (gain) => same(gains[gain], standard[gain]) || lab.kernels.allows(observer, gain, gains[gain]);
+      const bad = Object.keys(gains).find((gain) => !allowed(gain));
+      if (bad) throw new BadAddress(`"gains.${observer}.${bad}" is ${gains[bad]}, which this observer does not allow`);
+    }
+  }
+
+  /** Settings have come to rest. */
+  rested(settings) {
+    if (settings === this.written) return;
+    this.written = settings;
+    this.timer ??= setTimeout(() => this.write(), SELDOM);
+  }
+
+  write() {
+    this.timer = null;
+    const parts = [...partsOf(window.location.hash)].filter(([name]) => this.names.includes(name));
+    const all = new Map(parts).set(this.name, textOf(this.written, this.lab.model));
+    window.history.replaceState(window.history.state, "", fragmentOf(all));
+  }
+
+  /** The address of the page with this lab as it is now, and no other. */
+  link() {
+    const [page] = window.location.href.split("#");
+    return page + fragmentOf(new Map([[this.name, textOf(this.lab.settings, this.lab.model)]]));
+  }
+
+  close() {
+    clearTimeout(this.timer);
+    window.removeEventListener("hashchange", this.listener);
+  }
+}
