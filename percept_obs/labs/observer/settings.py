@@ -7,7 +7,7 @@ import numpy as np
 
 from percept_obs.labs.observer.registry import Registry
 from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SIZE, WAYS
-from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, gains, noise, offering, over, own_gains
+from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, gains, noise, offering, own_gains
 from percept_obs.labs.shared.observer_texts import with_all_gains
 from percept_obs.labs.shared.schema import Choice, Group, Names, Number, Optional, Row, Schema, Settings, vector
 from percept_obs.labs.shared.surfaces import SURFACES, numbers_of
@@ -20,14 +20,8 @@ SCENARIOS = {
 FIRST_GUESS = 6.0
 """Metres from the camera at which the estimate of a drive starts: not where the point is, and in the picture."""
 HOLDS = ("zero", "first", "exact")
-PICTURES = ("outputs", "innovation", "step", "inverse", "distance", "error", "excitation")
-BOUND = ("error", "map")
-MAPPED = (
-    *("noise.size", "dropout", "foe.0", "foe.1", "b.0", "b.1", "b.2", "seen.0", "seen.1", "seen.2"),
-    *("X0.0", "X0.1", "X0.2", "believed.b.0", "believed.b.1", "believed.b.2"),
-    *("start.values.0", "start.values.1", "start.values.2", "xi"),
-)
-"""Axes of a map besides gains: settings, and combinations of several (front/src/observer/model/axes.js)."""
+CHARTS = ("error", "inverse", "outputs", "innovation", "excitation")
+"""Charts below that of the distance."""
 _ROWS = [[f"a{i}{j}" for j in (1, 2, 3)] for i in (1, 2, 3)]
 
 
@@ -91,18 +85,8 @@ SCHEMA = Schema(
         },
         about='a mapping of mode, "own", "zero" or "chosen", and the chosen values',
     ),
-    window=Number(10.0, 0.1, 200, (0.5, 30), 0.5, unit="s", about=_WINDOW, topic="pictures"),
-    threshold=Number(0.1, 0, 10, (0, 0.5), 0.005, label="threshold of |w|", about=_THRESHOLD, topic="pictures"),
-    pictures=Names(["distance", "error", "excitation"], PICTURES, label="Time charts", about="those that are shown"),
-    bound=Names([], BOUND, label="The bound", least=0, about="where the least error that the noise leaves is drawn"),
-    map=Group(
-        {
-            "seconds": Number(2.0, 0.1, 20, (0.5, 10), 0.5, label="map: seen for", unit="s"),
-            "distance": Number(5.0, 0.1, 1000, (1, 20), 0.5, label="map: distance at first", unit="m"),
-        },
-        about="of the points of the map of the bound, the seconds that they are seen and their distance at first",
-    ),
-    over=over({"identifier_based": ["gain"]}, MAPPED),
+    window=Number(10.0, 0.1, 200, (0.5, 30), 0.5, unit="s", about=_WINDOW, topic="charts"),
+    threshold=Number(0.1, 0, 10, (0, 0.5), 0.005, label="threshold of |w|", about=_THRESHOLD, topic="charts"),
     kept=KEPT,
 )
 """The settings; a lab of its own scenarios and recordings knows more of the first, and all have gains."""
@@ -119,7 +103,6 @@ def schema_of(registry: Registry, scenarios_and_recordings: Mapping[str, Any]) -
             "surface": offering(SCHEMA["surface"], registry.surfaces),
             "observers": offering(SCHEMA["observers"], registry.observers),
             "gains": gains(standard, lambda name: with_all_gains(registry.examples(name))),
-            "over": over(standard, MAPPED),
             "switches": Group(switches, partial=True),
         }
     )

@@ -14,7 +14,6 @@ from percept_obs.labs.shared.markup import dotted, formula, markup
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.labs.shared.surfaces import SURFACES
 from percept_obs.labs.shared.user_observers import Maker, loops_for_the_page, texts_of_observer
-from percept_obs.observability.maps import map_kernel
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.recording.simulation import point_in_motion
@@ -99,7 +98,7 @@ def model_for_the_page() -> Texts:
 
 
 def surface_for_the_page(surface: ImagingSurface, outputs: Iterable[tuple[str, ...]]) -> Texts:
-    """Functions of a surface: image, ray, focus of expansion, flow, and the bound over the image."""
+    """Functions of a surface: image, ray, focus of expansion, flow."""
     outputs = tuple(outputs)
     system = system_on(surface)
     shape = surface.parameters
@@ -113,7 +112,6 @@ def surface_for_the_page(surface: ImagingSurface, outputs: Iterable[tuple[str, .
         "flow": function_source(
             (*system.coordinates, *system.parameters), (*system.rate, *system.rate.jacobian(system.coordinates))
         ),
-        "maps": {"+".join(names): map_kernel(surface, names).sources() for names in map(tuple, outputs)},
     }
 
 

@@ -12,7 +12,7 @@ import sympy as sp
 
 from percept_obs.compile import vectorised
 from percept_obs.labs.points.analysis import in_words
-from percept_obs.labs.points.settings import DRIVE, LONGEST, PICTURES, SCHEMA
+from percept_obs.labs.points.settings import CHARTS, DRIVE, LONGEST, SCHEMA
 from percept_obs.labs.points.texts import (
     BLOCKS,
     STATES,
@@ -29,6 +29,7 @@ from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import is_sampled, refuse_longer, times_of
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import read_motion
+from percept_obs.labs.shared.view import view_of
 from percept_obs.labs.shared.work import solver_calls, too_much, within_reach
 from percept_obs.observability.windows import UNSEEN
 from percept_obs.points import FirstSight, PointsRun, PointsScenario, UnseenDirection, luenberger
@@ -82,11 +83,12 @@ class PointsLab(Lab):
     schema = SCHEMA
     title = "Many points of one state"
     blocks = BLOCKS
+    looks = view_of(CHARTS)
 
     @checked
     def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:
         self._form = form
-        if form is None and not set(settings) - {"face"}:
+        if form is None and not set(settings) - set(self.looks):
             settings = DRIVE | settings
         printed: dict[str, Texts] = {}
         opening = SCHEMA.opening
@@ -104,7 +106,6 @@ class PointsLab(Lab):
             SCHEMA.opening,
             texts=with_texts("points_lab", printed),
             drive=DRIVE,
-            pictures=PICTURES,
             error=ERROR,
             **{**for_the_page(), "verdicts": {**VERDICTS, **GRAMIAN_VERDICTS}},
             remedy=REMEDY,

@@ -3,10 +3,11 @@
 from percept_obs.labs.points.texts import MOST_POINTS, STATES
 from percept_obs.labs.points.typed_weight import MOST_OF_P
 from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, noise
-from percept_obs.labs.shared.schema import Choice, Names, Number, Optional, Row, Schema, Settings, Several, Text, vector
+from percept_obs.labs.shared.schema import Choice, Number, Optional, Row, Schema, Settings, Several, Text, vector
 from percept_obs.labs.shared.typed_motion import typed_setting
 
-PICTURES = ("error", "depth", "points", "gramian")
+CHARTS = ("error", "points", "depth", "gramian")
+"""Charts below that of the mean error."""
 WEIGHTS = ("constant", "scheduled", "typed", "lyapunov", "riccati")
 LONGEST = 120.0
 """Seconds that a run lasts at most."""
@@ -71,9 +72,8 @@ SCHEMA = Schema(
     ),
     duration=Number(30.0, 1, LONGEST, (4, 60), 1, unit="s"),
     window=Number(
-        8.0, 0.1, 120, (0.5, 20), 0.5, unit="s", label="window T", about="window of the Gramian", topic="pictures"
+        8.0, 0.1, 120, (0.5, 20), 0.5, unit="s", label="window T", about="window of the Gramian", topic="charts"
     ),
-    pictures=Names(["error", "depth", "gramian"], PICTURES, label="Time charts", about="those that are shown"),
     kept=KEPT,
 )
 

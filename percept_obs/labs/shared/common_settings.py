@@ -1,8 +1,8 @@
-"""Settings that several labs have: gains of their observers, noise, a map over two settings, a seed, a kept run."""
+"""Settings that several labs have: gains of their observers, noise, a seed, a kept run."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -41,22 +41,6 @@ def noise(**sizes: Number) -> Group:
     return Group({"kind": kind, **sizes}, about=f"of the camera: a mapping of kind, {', '.join(sizes)}")
 
 
-def over(gains: Mapping[str, Iterable[str]], places: Sequence[str]) -> Group:
-    """A map over two settings: what it shows, of which observer, and the places of both: its gains, and others.
-
-    It opens with the first gain and the first of the other places.
-    """
-    axes = [f"gains.{name}.{gain}" for name, names in gains.items() for gain in names]
-    shown = {
-        "shows": Choice(SHOWS[0], SHOWS, label="shows"),
-        "observer": Choice(next(iter(gains)), tuple(gains), label="observer"),
-        "across": Choice(axes[0], (*axes, *places), label="across"),
-        "up": Choice(places[0], (*axes, *places), label="up"),
-    }
-    return Group(shown, partial=True, about=f"a map over two settings: a mapping of {', '.join(shown)}")
-
-
-SHOWS = ("nothing", "settling", "error")
 SEED = Number(0, 0, 2**32 - 1, (0, 100), 1, whole=True, about="of what is drawn at random", topic="camera")
 DROPOUT = Number(
     0.0, 0, 0.95, (0, 0.9), 0.01, label="lost samples", about="share of samples that are lost", topic="camera"

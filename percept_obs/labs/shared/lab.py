@@ -1,7 +1,7 @@
 """Base class of the labs: bundle and texts of the page, state in traitlets, errors that show, one lab a cell.
 
 To add a lab: a folder with a subclass of `Lab`, a `Schema` of its settings, and the texts that ``printing.py`` prints
-for its page.  Beside it a folder in ``front/src`` with a subclass of ``Live``, named in ``front/src/main.js``.
+for its page.  Beside it a folder in ``front/src`` with a subclass of ``Lab``, named in ``front/src/main.js``.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from percept_obs.labs.shared.printed import FRONT, file_of
 from percept_obs.labs.shared.saved import ended, page_of
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Blocks, read_motion
+from percept_obs.labs.shared.view import VIEW
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
 from percept_obs.system.surfaces import BehindCamera
 from percept_obs.validation import checked, write_whole
@@ -42,13 +43,10 @@ ValueError
 """The end of every lab's docstring."""
 
 TYPED = ("motion", "P", "P0")
-"""The settings that are typed as expressions of time."""
-
-MOST_READ = 2000
-"""Largest number of characters of a text that is read for the page."""
+"""The settings that are expressions of time."""
 
 MOST_WRITTEN = 50
-"""Largest number of typed motions that are kept for the page."""
+"""Largest number of motions over time that are kept for the page."""
 
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
 
@@ -77,10 +75,12 @@ class BadSettings(traitlets.TraitError, ValueError):
 
 
 class _Checked(traitlets.TraitType[Settings, Settings]):
-    """Settings that the lab checks, also those that equal the present ones, as True equals 1."""
+    """Settings, or a view, that the lab checks, also those that equal the present ones, as True equals 1."""
 
     def validate(self, lab: Any, value: Any) -> Settings:
         try:
+            if self.name == "view":
+                return lab.looks.read(value, lab.looks.opening)
             checked = dict(lab.check(value))
         except ValueError as error:
             raise BadSettings(str(error)) from None
@@ -94,27 +94,28 @@ class Lab(anywidget.AnyWidget):
     The page sends `settings` and `summary` together when the hand rests; Python answers with `analysis`, which carries
     the summary's serial.  Nothing is sent as a message of its own, so that a busy kernel skips to the latest state.
 
-    A lab of its own has a `schema`, and says more in `refuse` and `analyse`.  It is made with its `kind`, the user's
-    settings and perhaps the `face` that the page opens with ("first" for the first screen, or "workbench"), complete
-    settings to open with, standard ones, printed texts where they are not those of the package, and other data.
+    A lab of its own has a `schema`, says in `looks` what can be looked at, and more in `refuse` and `analyse`.  It is
+    made with its `kind`, the user's settings and what is looked at, complete settings to open with, standard ones,
+    printed texts where they are not those of the package, and other data.
     """
 
     _esm = BUNDLE.read_text(encoding="utf-8")  # given a path, anywidget would keep every lab for ever
     schema: Schema
     title = "A lab"
     blocks: Blocks = MappingProxyType({})
-    """Vectors and matrices that may be typed, by their letters."""
-    from_the_page: tuple[str, ...] = ("asked", "settings", "summary")
+    """Vectors and matrices that may vary over time, by their letters."""
+    looks: Schema = VIEW
+    """What can be looked at."""
+    from_the_page: tuple[str, ...] = ("view", "settings", "summary")
     """Traits that the page may set."""
-    face = traitlets.Enum(("first", "workbench"), "first", help="What the page opens with.").tag(sync=True)
+    view: Any = _Checked({}, help="What of it is looked at.").tag(sync=True)
     kind = traitlets.Unicode(help="Which of the bundle's labs the page is to show.").tag(sync=True)
     texts = traitlets.Bytes(help="Printed texts of the page, compressed.").tag(sync=True)
     model = traitlets.Dict(help="Data of the page besides its texts.").tag(sync=True)
     settings: Any = _Checked({}, help="Everything that defines what is shown.").tag(sync=True)
     summary = traitlets.Dict(help="Results of the page: verdicts, numbers at some times.").tag(sync=True)
     analysis = traitlets.Dict(help="Analysis by Python when the hand rests.").tag(sync=True)
-    asked = traitlets.Unicode(help="A motion that somebody typed, to be read.").tag(sync=True)
-    written = traitlets.Dict(help="Typed motions, each as a function for the page, or why it cannot be read.").tag(
+    written = traitlets.Dict(help="Motions over time, each as a function for the page, or why it cannot be read.").tag(
         sync=True
     )
     error = traitlets.Unicode(help="Error in Python, which the page shows.").tag(sync=True)
@@ -123,13 +124,14 @@ class Lab(anywidget.AnyWidget):
         self, kind: str, settings: Settings, opening: Settings, standard: Settings, texts: bytes = b"", **model: Any
     ) -> None:
         self._shown_in: frozenset[str] = frozenset()
-        face = settings.get("face", "first")
-        settings = {name: value for name, value in settings.items() if name != "face"}
+        view = self.looks.read({n: v for n, v in settings.items() if n in self.looks}, self.looks.opening)
+        settings = {name: value for name, value in settings.items() if name not in self.looks}
         self._opening = opening
         self._opening = self.check(settings)
         model |= {"opening": self._opening, "standard": self.check(standard), "schema": self.schema.for_the_page()}
+        model |= {"view": {"schema": self.looks.for_the_page(), "standard": self.looks.opening}}
         super().__init__(
-            kind=kind, texts=texts or file_of(kind).read_bytes(), model=model, settings=self._opening, face=face
+            kind=kind, texts=texts or file_of(kind).read_bytes(), model=model, settings=self._opening, view=view
         )
         _close_those_of_an_earlier_run(self)
 
@@ -137,7 +139,9 @@ class Lab(anywidget.AnyWidget):
         """Let the docstring list the settings."""
         super().__init_subclass__()
         if "{settings}" in (cls.__doc__ or ""):  # anywidget makes subclasses without one
-            cls.__doc__ = cleandoc(str(cls.__doc__)).replace("{settings}", cls.schema.listed() + REFUSES)
+            cls.__doc__ = cleandoc(str(cls.__doc__)).replace(
+                "{settings}", f"{cls.schema.listed()}\n{cls.looks.listed()}{REFUSES}"
+            )
 
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong."""
@@ -178,11 +182,6 @@ class Lab(anywidget.AnyWidget):
             answer = {"refusal": str(error), "position": getattr(error, "position", None)}
         kept = [item for item in self.written.items() if item[0] != text][1 - MOST_WRITTEN :]
         self.written = dict([*kept, (text, answer)])
-
-    @traitlets.observe("asked")
-    def _read(self, change: Mapping[str, Any]) -> None:
-        if change["new"].strip() and len(change["new"]) <= MOST_READ:
-            self._write(change["new"])
 
     def run(self) -> Any:
         """Runs of the present settings in Python, by the observers' names; of many points the run of all of them."""

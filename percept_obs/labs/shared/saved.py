@@ -15,7 +15,7 @@ from percept_obs.labs.shared.printed import FRONT
 STARTER = FRONT / "alone.js"
 """Script that turns the places of a page into labs."""
 
-SHOWN = ("kind", "face", "model", "settings", "written", "frames", "sheets")
+SHOWN = ("kind", "view", "model", "settings", "written", "frames", "sheets")
 """Traits of a lab that its page holds, besides its texts."""
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline' blob:; style-src 'unsafe-inline'"

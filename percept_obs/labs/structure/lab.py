@@ -12,7 +12,7 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
-from percept_obs.labs.shared.common_settings import gains, offering, over, own_gains
+from percept_obs.labs.shared.common_settings import gains, offering, own_gains
 from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.printed import Texts, part, with_texts
@@ -20,8 +20,9 @@ from percept_obs.labs.shared.samples import samples_for_the_page
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Typed, read_motion
 from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
+from percept_obs.labs.shared.view import view_of
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
-from percept_obs.labs.structure.settings import DRIVE, MAPPED, PICTURES, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
+from percept_obs.labs.structure.settings import CHARTS, DRIVE, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.user_defined import Given, opening_of, refuse_samples, zero_in
 from percept_obs.observers import Observer
@@ -92,9 +93,10 @@ class StructureLab(Lab):
     schema = SCHEMA
     title = "Structure and motion"
     blocks = BLOCKS
+    looks = view_of(CHARTS)
 
     def __init__(self, form: Given | None = None, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
-        plain = form is None and observers is None and not set(settings) - {"face"}
+        plain = form is None and observers is None and not set(settings) - set(self.looks)
         found, self._samples = (DRIVE if plain else {}, None) if form is None else opening_of(form)
         settings = found | settings
         ours = {name: make for name, (_, make) in OBSERVERS.items()}
@@ -108,7 +110,7 @@ class StructureLab(Lab):
         named = offering(SCHEMA["observers"], printed)
         self.schema = Schema(
             SCHEMA
-            | {"observers": named, "gains": gains(standard, self._observer_of), "over": over(standard, MAPPED)}
+            | {"observers": named, "gains": gains(standard, self._observer_of)}
             | ({"velocities": VELOCITIES} if self._samples else {})
         )
         opening = {**STANDARD, "gains": self.schema["gains"].opening}
@@ -121,7 +123,6 @@ class StructureLab(Lab):
             own={name: make.for_the_page() for name, make in self._user_observers.items()},
             samples=self._samples and {**samples_for_the_page(self._samples), "zero": zero_in(self._samples)},
             drive=DRIVE,
-            pictures=PICTURES,
             **for_the_page(),
             judged=DISTANCE,
             remedy=REMEDY,

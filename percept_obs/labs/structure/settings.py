@@ -2,20 +2,15 @@
 
 from dataclasses import replace
 
-from percept_obs.labs.shared.common_settings import KEPT, SEED, noise, over
+from percept_obs.labs.shared.common_settings import KEPT, SEED, noise
 from percept_obs.labs.shared.schema import Choice, Flag, Group, Names, Number, Row, Schema, Settings, vector
 from percept_obs.labs.shared.typed_motion import typed_setting
 from percept_obs.labs.structure.texts import OBSERVERS, case_of
 from percept_obs.structure import QUANTITIES
 from percept_obs.tracking.verdict import TOLERANCE
 
-PICTURES = ("unknowns", "error", "image", "depth", "innovation", "determinant", "range")
-MAPPED = (
-    *("noise.size", "noise.depth", "bias", "drift", "ybar.0", "ybar.1", "ybar.2", "scale"),
-    *(f"{vector}.{k}" for vector in ("v_c", "v_p", "w_c") for k in range(3)),
-)
-"""Axes of a map besides gains."""
-
+CHARTS = ("unknown1", "unknown2", "unknown3", "error", "image", "depth", "innovation", "determinant", "range")
+"""Charts below that of the distance, or of a speed."""
 LONGEST = 100.0
 """Seconds that a run lasts at most."""
 
@@ -78,8 +73,6 @@ SCHEMA = Schema(
     step=Number(1e-3, 1e-5, 0.1, (1e-4, 0.01), unit="s", label="longest step", about="the observers' longest step"),
     start=Choice("zero", ("own", "zero"), label="ŷ starts at", about='"own" for the first sample, or "zero"'),
     tolerance=Number(TOLERANCE, 1e-6, 10, (1e-4, 1), about="the relative error that counts as settled", topic="run"),
-    pictures=Names(["unknowns", "error", "determinant"], PICTURES, label="Time charts", about="those that are shown"),
-    over=over({"ideal": ["feedback"]}, MAPPED),
     kept=KEPT,
 )
 

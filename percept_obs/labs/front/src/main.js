@@ -1,14 +1,14 @@
 // The bundle's entrance: anywidget calls render() for each view of a lab.
 //
 // To add a lab: a folder beside observer/ with an engine that makes results of settings (types.js says of what) and a
-// class that extends Lab (common/page/lab.js) and draws them; name it below, as its Python side names it in `kind`.
-// What is in a folder `model` computes and knows nothing of the page; common/ knows nothing of a single lab.
+// class that extends Lab (ui/lab.js), with a screen that draws them; name it below as its Python side does in `kind`.
+// state/ and engine/ compute and know nothing of the page, draw/ makes pictures, ui/ the page; labs/ know all of them.
 
-import { serveMaps } from "./old/filling.js";
 import { serve } from "./engine/serving.js";
 import { modelOf } from "./state/texts.js";
-import { element } from "./ui/dom.js";
+import { element } from "./draw/dom.js";
 import { COLOURS } from "./draw/looks.js";
+import deskStyle from "./labs/desk/style.css";
 import style from "./ui/style.css";
 import { DeskLab } from "./labs/desk/lab.js";
 import { ObserverLab } from "./labs/observer/lab.js";
@@ -19,11 +19,11 @@ const LABS = { desk_lab: DeskLab, observer_lab: ObserverLab, points_lab: PointsL
 
 // A worker is made of this bundle as well, and computes what a page draws.
 if (typeof document === "undefined" && typeof self !== "undefined")
-  (self.name === "maps" ? serveMaps : serve)((kind) => LABS[kind].computing, self);
+  serve((kind) => LABS[kind].computing, self);
 
 export default {
   async render({ model, el }) {
-    const place = element("div", {}, element("style", {}, style, COLOURS));
+    const place = element("div", {}, element("style", {}, style, deskStyle, COLOURS));
     el.append(place);
     let lab;
     try {

@@ -5,7 +5,7 @@ import { Memory } from "../src/engine/memory.js";
 import { knownAt } from "../src/engine/tables.js";
 import { Runner } from "../src/engine/runner.js";
 import { short } from "../src/draw/scales.js";
-import { verdict } from "../src/state/words.js";
+import { verdict } from "../src/ui/words.js";
 import { translationTowards } from "../src/labs/observer/engine.js";
 import { drawResets } from "../src/old/chart_events.js";
 import { TimeChart, fillBand } from "../src/draw/old_charts.js";

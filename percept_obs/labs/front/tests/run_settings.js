@@ -5,7 +5,7 @@ import { mapOf } from "../src/labs/observer/bound_map.js";
 import { Engine } from "../src/labs/observer/engine.js";
 import { loadHere } from "./load_here.js";
 import { Kernels } from "../src/labs/observer/kernels.js";
-import { summaryOf } from "../src/state/words.js";
+import { summaryOf } from "../src/ui/words.js";
 
 const { model, tasks } = JSON.parse(readFileSync(0, "utf8"));
 const kernels = new Kernels(model, loadHere);

@@ -1,6 +1,6 @@
 // Runs settings of the structure lab given on standard input with the page's own engine and prints what it would draw.
 import { readFileSync } from "node:fs";
-import { summaryOf } from "../src/state/words.js";
+import { summaryOf } from "../src/ui/words.js";
 import { pythonOf } from "../src/labs/structure/code.js";
 import { StructureEngine } from "../src/labs/structure/engine.js";
 import { StructureKernels } from "../src/labs/structure/kernels.js";

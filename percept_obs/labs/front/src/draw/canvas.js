@@ -1,6 +1,6 @@
 // A canvas that is as sharp as the screen and as wide as its place, with a name for those who do not see it.
 
-import { element, setAttribute } from "../ui/dom.js";
+import { element, setAttribute } from "./dom.js";
 import { DASHES } from "./looks.js";
 
 const COLOURS = ["raised", "ink", "muted", "line", "grid", "sample", "warning", "kept", "noise", "paper"];
@@ -76,20 +76,6 @@ export class Picture {
   tell(text) {
     setAttribute(this.canvas, "aria-label", `${this.label}: ${text}`);
   }
-}
-
-/** Paint a square of dots of one colour, counted from the lower left on, each with an opacity from 0 to 1. */
-export function paintDots(canvas, size, colour, opacityOf) {
-  canvas.width = canvas.height = size;
-  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  pen.fillStyle = colour;
-  pen.fillRect(0, 0, size, size);
-  const dots = pen.getImageData(0, 0, size, size);
-  for (let k = 0; k < size * size; k++) {
-    const row = size - 1 - Math.floor(k / size);
-    dots.data[4 * (row * size + (k % size)) + 3] = 255 * opacityOf(k);
-  }
-  pen.putImageData(dots, 0, 0);
 }
 
 /** The colours of the theme that the element is shown in. */

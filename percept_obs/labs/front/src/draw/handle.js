@@ -2,7 +2,7 @@
 
 import { within } from "../engine/between.js";
 import { readable } from "./scales.js";
-import { element, listen } from "../ui/dom.js";
+import { element, listen } from "./dom.js";
 
 const NUDGE = 0.01;
 const LEAP = 10;

@@ -169,8 +169,7 @@ export class LabelledPicture extends Picture {
     const boxOf = (/** @type {any} */ { at: [cx, cy] }) => [cx - half - 2, cy - HALF, cx + half + 2, cy + HALF];
     const free = (spot) => !this.cut(boxOf(spot)) && !this.taken.some((other) => meet(boxOf(spot), other));
     const quiet = (spot) => free(spot) && !this.busy.some((other) => meet(boxOf(spot), other));
-    // At rest a picture is the same however it came about.
-    const before = this.theme.resting ? [] : spots.filter(({ key }) => key === this.places.get(id));
+    const before = spots.filter(({ key }) => key === this.places.get(id));
     const ways = [() => before.find(quiet), () => spots.find(quiet), () => before.find(free), () => spots.find(free)];
     let spot;
     for (const way of ways) spot ??= way();

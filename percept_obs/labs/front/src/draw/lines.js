@@ -1,124 +1,111 @@
-// What time charts are put together from: lines, ranges, and the same in words.
+// What charts are put together from: lines of the runs, of the truth and of the kept run, and scales around them.
 
-import { settled } from "../engine/errors.js";
-import { linearScale, logScale, readable } from "./scales.js";
-import { DASHES, KEPT, SOLID } from "./looks.js";
+import { indicesIn } from "../engine/tables.js";
+import { columnOf } from "../engine/derived.js";
+import { KEPT } from "./looks.js";
+import { linearScale, logScale, readable, spread } from "./scales.js";
 
 /** From this ratio on, the beginning of a distance cannot be read on a scale that shows its end. */
 const MANY = 50;
 
-export function line(name, time, values, colour, dash) {
-  return { name, time, values, colour, dash };
-}
-
-/** A line of what is shown, behind it the same of the kept run; `pick` gives times and values of a result. */
-export function withKept(name, shown, ghost, theme, pick) {
-  const kept = ghost ? [line(`kept ${name}`, ...pick(ghost), theme.kept, KEPT)] : [];
-  return [...kept, line(name, ...pick(shown), theme.ink, SOLID)];
-}
-
 /**
- * A range around the lines that are sure, which holds others as far as they leave it by its height.  As all scales of
- * charts it is a function of `bounds`, which says between what a line stays in the time that is in sight.
+ * The lines of one quantity: of the kept run, of each observer, of the truth.
+ *
+ * @param {any} scene  what is shown, with the chosen run
+ * @param {(result: any, run: any) => ArrayLike<number>} pick  values of a run
+ * @param {((result: any) => ArrayLike<number> | null) | null} [truth]  the true values
  */
-export function rangeAround(lines, certain) {
-  return (bounds) => {
-    const found = lines.map((l) => [l, bounds(l)]).filter(([, b]) => b);
-    const sure = found.filter(([l]) => certain(l)).map(([, b]) => b);
-    const all = found.map(([, b]) => b);
-    if (!all.length) return linearScale(0, 1);
-    let [low, high] = hull(sure.length ? sure : all);
-    if (sure.length) {
-      const room = Math.max(high - low, 0.1 * Math.abs(high), 1e-6);
-      const [least, most] = hull(all);
-      [low, high] = [Math.max(least, low - room), Math.min(most, high + room)];
-    }
-    return linearScale(low, high, 3);
+export function linesOf({ shown, ghost, theme, chosen, kept, secret }, pick, truth = null) {
+  const { time } = shown;
+  const name = (run) => (shown.runs.length > 1 ? run.title : "estimate");
+  const others = shown.runs.filter((run) => run !== chosen);
+  const own = (run, more) => {
+    return { text: name(run), time, values: pick(shown, run), colour: theme.lines[run.order], ...more };
   };
+  const before = ghost?.runs.find((run) => run.name === chosen?.name) ?? ghost?.runs[0];
+  const right = truth?.(shown);
+  return [
+    ...(before ? [keptLine(kept, ghost.time, pick(ghost, before), theme)] : []),
+    ...others.map((run) => own(run, { id: run.name, run: run.name, width: 1.8, secret })),
+    ...(chosen ? [own(chosen, { id: "estimate", width: 3, secret })] : []),
+    ...(right ? [{ id: "true", text: "true", time, values: right, colour: theme.ink, width: 1.6 }] : []),
+  ];
 }
 
-/** A range for distances, in decades where the truth goes through several, so that both its ends can be read. */
-export function distancesAround(lines, certain) {
-  return (bounds) => {
-    const sure = lines.filter(certain).map((l) => bounds(l)).filter(Boolean);
-    const [low, high] = sure.length ? hull(sure) : [1, 1];
-    return low > 0 && high > MANY * low ? logScale(low / 2, high * 2) : rangeAround(lines, certain)(bounds);
-  };
+/** A line of the kept run. */
+export function keptLine(text, time, values, theme) {
+  return { id: "kept", text, time, values, colour: theme.kept, dash: KEPT };
 }
 
-/** A logarithmic range for a level and the lines' positive values, as far as these lie between a least and a most. */
-export function decades(lines, least, most, level = NaN) {
-  const named = level > 0 ? [[0.9 * level, 1.1 * level]] : [];
-  return (bounds) => {
-    const positive = [...lines.map((l) => bounds(l, { above: 0 })), ...named].filter(Boolean);
-    if (!positive.length) return logScale(1e-3, 1);
-    const [low, high] = hull(positive);
-    const top = Math.min(Math.max(high, least * 10), most);
-    return logScale(Math.min(Math.max(low, least), top / 10), top);
-  };
+/** The lines of a coordinate of the runs and of the truth. */
+export function coordinateLines(scene, c) {
+  const column = ({ width }, rows) => columnOf(rows, width, c);
+  return linesOf(scene, (result, { estimate }) => column(result, estimate), (result) =>
+    result.truth?.length ? column(result, result.truth) : null,
+  );
+}
+
+/** Between what a line stays in a span of time; null where it has no value there. */
+function boundsIn(span, { time, values }, options) {
+  const [first, last] = indicesIn(time, span);
+  return spread("subarray" in values ? values.subarray(first, last + 1) : values.slice(first, last + 1), options);
 }
 
 /** The range that holds all of these. */
-export function hull(bounds) {
+function hull(bounds) {
   return [Math.min(...bounds.map(([low]) => low)), Math.max(...bounds.map(([, high]) => high))];
 }
 
+const isTrue = ({ id }) => id === "true";
+
+/** A range around the truth, which holds others as far as they leave it by its height; at least as far as `reach`. */
+export function around(lines, span, reach = 0) {
+  const found = lines.map((line) => [line, boundsIn(span, line)]).filter(([, bounds]) => bounds);
+  if (!found.length) return linearScale(0, 1);
+  const sure = found.filter(([line]) => isTrue(line)).map(([, bounds]) => bounds);
+  const all = found.map(([, bounds]) => bounds);
+  let [low, high] = hull(sure.length ? sure : all);
+  if (sure.length) {
+    const room = Math.max(high - low, 0.1 * Math.abs(high), 1e-6);
+    const [least, most] = hull(all);
+    [low, high] = [Math.max(least, low - room), Math.min(most, high + room)];
+  }
+  const short = reach - (high - low) / 2;
+  return short > 0 ? linearScale(low - short, high + short) : linearScale(low, high);
+}
+
+/** A range for distances, in decades where the truth goes through several, so that both its ends can be read. */
+export function distancesAround(lines, span) {
+  const sure = lines.filter(isTrue).map((line) => boundsIn(span, line)).filter(Boolean);
+  const [low, high] = sure.length ? hull(sure) : [1, 1];
+  return low > 0 && high > MANY * low ? logScale(low / 2, high * 2) : around(lines, span);
+}
+
+/** A logarithmic range for the lines' positive values, and a level, as far as these lie between a least and a most. */
+export function decades(lines, span, least, most, level = NaN) {
+  const named = level > 0 ? [[0.9 * level, 1.1 * level]] : [];
+  const positive = [...lines.map((line) => boundsIn(span, line, { above: 0 })), ...named].filter(Boolean);
+  if (!positive.length) return logScale(1e-3, 1);
+  const [low, high] = hull(positive);
+  const top = Math.min(Math.max(high, least * 10), most);
+  return logScale(Math.min(Math.max(low, least), top / 10), top);
+}
+
 /** The text equivalent of a chart: where each line begins and ends, and between what it stays. */
-export function chartInWords({ title, lines }) {
-  const parts = lines.map(({ name, values }) => {
+export function chartInWords(/** @type {import("./chart.js").Chart} */ { title, lines }) {
+  const parts = lines.map(({ text, id, values }) => {
     const finite = values.filter(Number.isFinite);
-    if (!finite.length) return `${name}: nothing to show`;
+    if (!finite.length) return `${text ?? id}: nothing to show`;
     const [least, most] = [Math.min, Math.max].map((pick) => finite.reduce((a, b) => pick(a, b)));
-    const [first, last] = [finite[0], finite.at(-1)];
-    return `${name}: from ${readable(first)} to ${readable(last)}, between ${readable(least)} and ${readable(most)}`;
+    const [first, last, low, high] = [finite[0], finite.at(-1), least, most].map((value) => readable(value));
+    return `${text ?? id}: from ${first} to ${last}, between ${low} and ${high}`;
   });
-  return `${title}. ${parts.join("; ")}.`;
-}
-
-/** Lines of the kept run and of the runs, by what is picked of each in its result. */
-export function runLines(shown, ghost, theme, label, pick) {
-  const kept = (run) => line(`kept ${run.title} ${label}`, ghost.time, pick(ghost, run), theme.kept, KEPT);
-  const own = ({ title, order }, values) =>
-    line(`${title} ${label}`, shown.time, values, theme.lines[order], DASHES[order]);
-  return [...(ghost?.runs ?? []).map(kept), ...shown.runs.map((run) => own(run, pick(shown, run)))];
-}
-
-/** Lines of the kept run, of the truth and of the runs, by what is picked of rows of numbers. */
-export function linesOf(shown, ghost, theme, label, pick) {
-  const lines = runLines(shown, ghost, theme, label, (result, run) => pick(result, run.estimate));
-  const truth = shown.truth ? [line(`true ${label}`, shown.time, pick(shown, shown.truth), theme.ink, SOLID)] : [];
-  return lines.toSpliced(lines.length - shown.runs.length, 0, ...truth);
+  return `${title ? `${title}. ` : ""}${parts.join("; ")}.`;
 }
 
 /** When observers were reset, in their colours. */
-export function marksOf({ runs }, theme) {
+export function resetsOf({ shown: { runs }, theme }) {
   const text = ({ length }) => (length === 1 ? "1 reset" : `${length} resets`);
   const reset = runs.filter((run) => run.resets.length);
   return reset.map(({ resets, order }) => ({ times: resets, colour: theme.lines[order], text: text(resets) }));
-}
-
-/** The tolerance, and since when errors stay in it, where they do so long enough to be sure of. */
-export function toleranceOf({ runs, time, tolerance, settledPart }, theme) {
-  const length = time.at(-1) - time[0];
-  const events = runs
-    .filter(({ settling }) => settling > 0 && settled(settling, length, settledPart))
-    .map(({ settling, order }) => {
-      return { time: time[0] + settling, text: `${readable(settling)} s`, colour: theme.lines[order] };
-    });
-  return { level: tolerance, events };
-}
-
-/** Which lines of a point are sure: the truth, or where there is none the samples. */
-export function sureOf(shown) {
-  return (l) => l.name.startsWith("true") || (!shown.truth && l.name.endsWith("sampled"));
-}
-
-/** A range around the truth, or where there is none around the samples; at least as far as `reach` to both sides. */
-export function around(lines, shown, reach = 0) {
-  const range = rangeAround(lines, sureOf(shown));
-  return (bounds) => {
-    const scale = range(bounds);
-    const middle = (scale.low + scale.high) / 2;
-    return scale.high - scale.low < 2 * reach ? linearScale(middle - reach, middle + reach, 3) : scale;
-  };
 }

@@ -36,54 +36,33 @@ export function readable(value, digits = 3) {
     .replace(/-/g, "−");
 }
 
-/** Distance between ticks that divides a span into about so many round parts. */
-function roundStep(span, parts) {
-  const rough = span / Math.max(1, parts);
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const factor = [1, 2, 5].find((f) => f * power >= rough * 0.999) ?? 10;
-  return factor * power;
+/** The smallest of 1, 2 and 5 times a power of ten that is not below a value. */
+export function roundStep(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return power * ([1, 2, 5].find((factor) => factor * power >= value * (1 - 1e-9)) ?? 10);
 }
 
-/** A linear range, widened to round numbers. */
-export function linearScale(low, high, parts = 4) {
-  if (!(high > low)) {
-    const margin = Math.max(Math.abs(low) * 0.1, 1e-3);
-    [low, high] = [low - margin, high + margin];
-  }
-  const step = roundStep(high - low, parts);
-  const [bottom, top] = [Math.floor(low / step + 1e-9) * step, Math.ceil(high / step - 1e-9) * step];
-  const count = Math.round((top - bottom) / step);
-  const ticks = Array.from({ length: count + 1 }, (_, k) => Number((bottom + k * step).toPrecision(12)));
-  return { low: bottom, high: top, ticks, log: false };
+/** A linear range around two values, with some room. */
+export function linearScale(low, high) {
+  const room = high > low ? 0.08 * (high - low) : Math.max(Math.abs(low) * 0.1, 1e-3);
+  return { low: low - room, high: high + room };
 }
 
 /** A logarithmic range of whole decades. */
 export function logScale(low, high) {
   const bottom = Math.floor(Math.log10(low) + 1e-9);
   const top = Math.max(bottom + 1, Math.ceil(Math.log10(high) - 1e-9));
-  const every = Math.ceil((top - bottom) / 4);
-  const ticks = Array.from({ length: Math.floor((top - bottom) / every) + 1 }, (_, k) => 10 ** (bottom + k * every));
-  return { low: 10 ** bottom, high: 10 ** top, ticks, log: true };
-}
-
-/** The scale that was drawn before, if the one that is wanted lies in it and is not lost there. */
-export function keptScale(before, wanted) {
-  if (!before || Boolean(before.log) !== Boolean(wanted.log)) return wanted;
-  const [[low, high], [least, most]] = [before, wanted].map((scale) =>
-    [scale.low, scale.high].map(scale.log ? Math.log10 : Number),
-  );
-  const slack = 1e-9 * (high - low);
-  return least >= low - slack && most <= high + slack && most - least > 0.4 * (high - low) ? before : wanted;
+  return { low: 10 ** bottom, high: 10 ** top, log: true };
 }
 
 const SOME = 400;
 const some = new Float64Array(2 * SOME);
 
 /** Bounds between which the given parts of the finite values above a least lie, from about 400 of them. */
-export function spread(values, { lowPart = 0.01, highPart = 0.99, above = -Infinity, first = 0, width = 1 } = {}) {
-  const every = width * Math.max(1, Math.floor(values.length / width / SOME));
+export function spread(values, { lowPart = 0.01, highPart = 0.99, above = -Infinity } = {}) {
+  const every = Math.max(1, Math.floor(values.length / SOME));
   let count = 0;
-  for (let k = first; k < values.length; k += every) {
+  for (let k = 0; k < values.length; k += every) {
     const value = values[k];
     if (value > above && value < Infinity) some[count++] = value;
   }

@@ -1,6 +1,6 @@
 // A picture of the first screen.  What is written in it never overlaps and is never cut: labels look for a free place.
 
-import { element } from "../ui/dom.js";
+import { element } from "./dom.js";
 import { LabelledPicture, RIM } from "./labels.js";
 import { arrowMark, disc, ring, stroke } from "./marks.js";
 

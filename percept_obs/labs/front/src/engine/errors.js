@@ -34,3 +34,9 @@ export function settlingTime(time, errorAt, tolerance) {
   if (inside === time.length) return Infinity;
   return inside === 0 ? 0 : time[inside] - time[0];
 }
+
+/** The distances between which an inverse distance lies that is claimed to two standard deviations. */
+export function claimedDistances(inverse, deviation) {
+  const [low, high] = [inverse - 2 * deviation, inverse + 2 * deviation];
+  return high > 0 ? [1 / high, low > 0 ? 1 / low : Infinity] : null;
+}

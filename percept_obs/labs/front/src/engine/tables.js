@@ -184,3 +184,8 @@ export function sampleAt(time, when) {
   }
   return low;
 }
+
+/** Which of increasing times a span needs to be drawn: its own, and one at either side. */
+export function indicesIn(time, { low, high }) {
+  return [sampleAt(time, low), Math.min(sampleAt(time, high) + 1, time.length - 1)];
+}

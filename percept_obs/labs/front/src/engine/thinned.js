@@ -1,9 +1,15 @@
 // @ts-check
 // As much of a result as is drawn while a hand moves: fewer samples, each with the numbers that it has at rest.
 
-import { indicesIn } from "../old/timeline.js";
+import { indicesIn } from "./tables.js";
 
-/** @typedef {{low: number, high: number, cursor: number | null}} Sight  span of the charts, and time of the cursor */
+/**
+ * @typedef {object} Sight   what is drawn while a hand moves
+ * @property {number} low    the span of the charts
+ * @property {number} high
+ * @property {number | null} cursor  the time that is shown
+ * @property {boolean} [complete]  whether charts show what is read off a whole result
+ */
 
 /** Numbers of what is in sight at most; and samples that there are at least, one for two pixels of a chart. */
 const [MOST, LEAST] = [30_000, 375];

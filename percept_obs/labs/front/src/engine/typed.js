@@ -12,8 +12,8 @@ export function typedModule({ written }, text) {
   if (!answer?.source) {
     const why =
       answer?.refusal ??
-      "only Python reads what is typed, and it has not: open the lab in a notebook, and run its cell";
-    return [{ key: `motion ${text}`, texts: {}, refusal: `What is typed, "${text}", cannot be shown: ${why}` }];
+      "only Python reads it, and it has not: open the lab in a notebook, and run its cell";
+    return [{ key: `motion ${text}`, texts: {}, refusal: `"${text}" cannot be shown: ${why}` }];
   }
   const { source, columns, uses } = answer;
   const typed = `${source}\nObject.assign(evaluate, ${JSON.stringify({ columns, uses })});`;

@@ -1,4 +1,4 @@
-// State of a lab: settings, the question that is open, the span of time and the line that stand out; and the way back.
+// State of a lab: settings, what of them is looked at, the question that is open; and the way back.
 
 import { same } from "./settings.js";
 
@@ -9,14 +9,16 @@ import { same } from "./settings.js";
  * @property {Settings} before      the settings to go back to
  * @property {Settings} of          those that it, or its answer, is about
  * @property {number | null} said   which answer was chosen; null while it is asked
- * @typedef {object} Sight         the part of the time that the hand has asked for
- * @property {import("../old/timeline.js").Span} span
- * @property {string} of           scenario and times of the run in which it has: another one shows all
+ * @typedef {object} View           what is looked at: it is no part of a run, and a question leaves it as it is
+ * @property {string} more          the group of the drawer that is open; empty while the drawer is closed
+ * @property {string[]} charts      those below the first one
+ * @property {string} chosen        the observer that arrows and sentence are about; empty for the first one
+ * @property {boolean} side         whether the map is turned to the side
+ * @property {number[] | null} sight  the part of the time that the hand has asked for
  * @typedef {object} Moment
  * @property {Settings} settings
  * @property {Question | null} question
- * @property {Sight | null} sight
- * @property {string | number | null} picked  the line that stands out
+ * @property {View} view
  */
 
 const MOST_STEPS = 200;
@@ -25,9 +27,9 @@ const LOOKING = "sight";
 
 /** Settings with their history: one step is what a hand does from taking hold to letting go. */
 export class State {
-  constructor(settings) {
+  constructor(settings, view = /** @type {any} */ ({})) {
     /** @type {Moment} */
-    this.now = { settings, question: null, sight: null, picked: null };
+    this.now = { settings, question: null, view };
     /** @type {number | null} */
     this.cursor = null;
     /** @type {Moment[]} */
@@ -40,6 +42,10 @@ export class State {
 
   get settings() {
     return this.now.settings;
+  }
+
+  get view() {
+    return this.now.view;
   }
 
   get question() {
@@ -60,11 +66,12 @@ export class State {
     this.held = keys;
   }
 
-  /** Take another sight of the same settings; while a wheel turns it is one step, until seen(). */
-  look(sight) {
-    if (this.held === LOOKING) this.now = { ...this.now, sight };
-    else this.step({ sight });
-    this.held = LOOKING;
+  /** Look at something else of the same settings; while a wheel turns it is one step, until seen(). */
+  look(changes, going = false) {
+    const view = { ...this.view, ...changes };
+    if (going && this.held === LOOKING) this.now = { ...this.now, view };
+    else this.step({ view });
+    this.held = going ? LOOKING : null;
   }
 
   seen() {
@@ -85,9 +92,9 @@ export class State {
     this.held = null;
   }
 
-  /** Put settings in the place of the present ones, which are impossible. */
-  amend(settings) {
-    this.now = { ...this.now, settings };
+  /** Put others in the place of the present settings or view, which are impossible, or not looked at any more. */
+  amend(changes) {
+    this.now = { ...this.now, ...changes };
   }
 
   /** Go back a step; whether there was one. */
@@ -111,7 +118,8 @@ export class State {
 
   /** Ask a question, over the settings that it is about. */
   ask(name, settings) {
-    this.step({ settings, question: { name, before: this.before, of: settings, said: null } });
+    const question = { name, before: this.before, of: settings, said: null };
+    this.step({ settings, view: { ...this.view, sight: null }, question });
   }
 
   /** Answer it, over the settings that show whether the answer is right. */
@@ -126,7 +134,7 @@ export class State {
 
   reset(settings) {
     this.cursor = null;
-    this.step({ settings, question: null, sight: null, picked: null });
+    this.step({ settings, question: null });
     this.release();
   }
 }

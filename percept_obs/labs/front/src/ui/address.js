@@ -17,6 +17,7 @@ export class Address {
     this.names = place.names;
     /** The settings in the address; those that the lab opens with need not be there. */
     this.written = lab.settings;
+    this.looked = lab.state.view;
     this.timer = /** @type {any} */ (null);
     this.listener = () => this.follow();
     window.addEventListener("hashchange", this.listener);
@@ -36,10 +37,10 @@ export class Address {
         if (names[0] === name) this.refuseStranger(hash, [...parts.keys()]);
         return;
       }
-      const settings = settingsIn(mine, lab.model);
+      const { settings, view } = this.read(mine);
       for (const each of lab.wanted(settings)) await this.refuse(each);
       if (lab.closed || window.location.hash !== hash) return;
-      lab.visit(settings);
+      lab.visit(settings, view);
       if (parts.keys().next().value === name) lab.view.root.scrollIntoView({ block: "nearest" });
     } catch (error) {
       if (!(error instanceof BadAddress)) return lab.fail(error);
@@ -71,24 +72,43 @@ export class Address {
     }
   }
 
+  /** What the address tells as settings is also how they are looked at. */
+  get told() {
+    const { schema, standard, view } = this.lab.model;
+    const kinds = { ...schema, view: { kind: "group", of: view.schema } };
+    return { schema: kinds, standard: { ...standard, view: view.standard } };
+  }
+
+  read(text) {
+    const { view, kept, ...settings } = settingsIn(text, this.told);
+    if (kept) delete kept.view;
+    return { settings: { ...settings, kept }, view };
+  }
+
+  text(settings, view) {
+    const kept = settings.kept && { ...settings.kept, view };
+    return textOf({ ...settings, kept, view }, this.told);
+  }
+
   /** Settings have come to rest. */
-  rested(settings) {
-    if (settings === this.written) return;
+  rested(settings, view) {
+    if (settings === this.written && view === this.looked) return;
     this.written = settings;
+    this.looked = view;
     this.timer ??= setTimeout(() => this.write(), SELDOM);
   }
 
   write() {
     this.timer = null;
     const parts = [...partsOf(window.location.hash)].filter(([name]) => this.names.includes(name));
-    const all = new Map(parts).set(this.name, textOf(this.written, this.lab.model));
+    const all = new Map(parts).set(this.name, this.text(this.written, this.looked));
     window.history.replaceState(window.history.state, "", fragmentOf(all));
   }
 
   /** The address of the page with this lab as it is now, and no other. */
   link() {
     const [page] = window.location.href.split("#");
-    return page + fragmentOf(new Map([[this.name, textOf(this.lab.settings, this.lab.model)]]));
+    return page + fragmentOf(new Map([[this.name, this.text(this.lab.settings, this.lab.state.view)]]));
   }
 
   close() {

@@ -1,9 +1,9 @@
-// The time of a first screen: play from start to end once, pause, step, and a button that says which.
+// The time of a lab: play from start to end once, pause, step, and a button that says which.
 
 import { within } from "../engine/between.js";
-import { button, setAttribute, svg } from "./dom.js";
+import { button, setAttribute, svg } from "../draw/dom.js";
 
-/** Seconds that a run takes to watch, however long it is; and parts into which the arrow keys divide it. */
+/** Seconds that the part in sight takes to watch, however long it is; and parts into which the arrow keys divide it. */
 const [SHOWN_FOR, PARTS] = [6, 40];
 /** Milliseconds to read the first sentence in. */
 const FIRST_LOOK = 1000;
@@ -11,6 +11,7 @@ const FIRST_LOOK = 1000;
 export const LONGEST_STALL = 60;
 const [PLAY, PAUSE, STEP] = ["M3 0l12 8-12 8z", "M2 1h4v14H2zM10 1h4v14h-4z", "M2 1l8 7-8 7zM11 1h3v14h-3z"];
 const STEPS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -5, PageUp: 5 };
+const ZOOMS = { "+": 0.5, "=": 0.5, "-": 2, _: 2 };
 
 /** The time that a lab shows.  What the estimate will do is secret until it was played once. */
 export class Clock {
@@ -32,19 +33,18 @@ export class Clock {
     this.lab = lab;
     this.stopped = stopped;
     this.still = window.matchMedia("(prefers-reduced-motion: reduce)");
-    this.press = button("", () => this.toggle(), { class: "play", "data-control": "first play" });
+    this.press = button("", () => this.toggle(), { class: "play", "data-control": "play" });
     this.sign = svg("path");
     this.press.append(svg("svg", { viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true" }, this.sign));
     this.press.addEventListener("keydown", (event) => this.key(event));
   }
 
-  get end() {
-    const { shown } = this.lab;
-    return shown?.time?.length ? shown.time[shown.time.length - 1] : 0;
+  get start() {
+    return this.lab.span.low;
   }
 
-  get start() {
-    return this.lab.shown?.time?.[0] ?? 0;
+  get end() {
+    return this.lab.span.high;
   }
 
   /** The time that is shown. */
@@ -135,14 +135,17 @@ export class Clock {
       else this.play();
     }
     const now = this.present();
-    if (!(lab.state.cursor <= now)) lab.state.cursor = now;
+    if (!(lab.state.cursor <= now && lab.state.cursor >= now)) lab.state.cursor = now;
   }
 
   key(event) {
     const step = STEPS[event.key];
+    const factor = ZOOMS[event.key];
     if (step) this.put(this.present() + (step * (this.end - this.start)) / PARTS);
     else if (event.key === "Home") this.put(this.start);
     else if (event.key === "End") this.put(this.end);
+    else if (factor) this.lab.zoom(factor, this.present());
+    else if (event.key === "0") this.lab.showAll();
     else return;
     event.preventDefault();
   }
@@ -151,7 +154,8 @@ export class Clock {
   show() {
     const [sign, word] = this.still.matches ? [STEP, "Step"] : this.playing ? [PAUSE, "Pause"] : [PLAY, "Play"];
     setAttribute(this.sign, "d", sign);
-    const text = `${word}, ${this.present().toFixed(1)} of ${this.end.toFixed(1)} s; arrow keys move the time`;
+    const at = `${this.present().toFixed(1)} of ${this.end.toFixed(1)} s`;
+    const text = `${word}, ${at}; arrow keys move the time, plus and minus zoom`;
     if (!this.playing) setAttribute(this.press, "aria-label", text);
     this.press.disabled = this.stopped();
   }

@@ -1,7 +1,7 @@
 // Controls that a keyboard, a screen reader and a hand can use.  Each has a row of the page, and show() brings it to
 // the present settings.
 
-import { element, formula, setText } from "./dom.js";
+import { element, formula, setAttribute, setText } from "../draw/dom.js";
 
 let count = 0;
 
@@ -27,7 +27,7 @@ function expected({ least, most, above, whole, nonzero, condition, reason }) {
 }
 
 /** A line below a field that says what it takes, while something else stands there and after it was taken back. */
-export function warning(limits) {
+function warning(limits) {
   const node = element("p", { class: "range", role: "status", hidden: true });
   const tell = (good) => {
     node.hidden = good;
@@ -52,17 +52,45 @@ function mark(field, good) {
 }
 
 /** Return true while somebody types what cannot be taken: it stays to be corrected, whatever is computed meanwhile. */
-export function isBeingTyped(field) {
+function isBeingTyped(field) {
   return document.activeElement === field && field.getAttribute("aria-invalid") === "true";
+}
+
+/** An input that slides, with the function that brings it to a value and its words; `take` takes what a hand asks. */
+function sliding(/** @type {any} */ { low, high, step, log = false }, attributes, take, rest) {
+  const [inside, outside] = log ? [Math.log10, (v) => Number((10 ** v).toPrecision(3))] : [Number, Number];
+  const box = element("input", {
+    ...{ type: "range", min: inside(low), max: inside(high), step: log ? 0.01 : step, ...attributes },
+    oninput: () => take(outside(Number(box.value))),
+    onchange: () => rest?.(),
+  });
+  const put = (value, text) => {
+    const there = document.activeElement === box && outside(Number(box.value)) === value;
+    if (!there) box.value = String(inside(Math.max(value, log ? low : -Infinity)));
+    setAttribute(box, "aria-valuetext", text);
+  };
+  return { box, put };
+}
+
+/** A slider whose value stands beside its name; `text` writes the value, which is not there where it is null. */
+export function range(/** @type {any} */ { name, label, get, set, rest, text = String, ...sizes }) {
+  const value = element("output", {});
+  const { box, put } = sliding(sizes, { "data-control": name, "aria-label": label }, set, rest);
+  const row = element("label", { class: "sliding" }, element("span", {}, `${label} `, value), box);
+  const show = () => {
+    const now = get();
+    row.hidden = now === undefined || now === null;
+    if (row.hidden) return;
+    setText(value, text(now));
+    put(now, text(now));
+  };
+  return { row, show, name, parts: [box] };
 }
 
 /** A slider and a field for a number; `meaning` says in small letters what the name stands for. */
 export function slider(options) {
-  const { name, label, meaning = "", letter = "", low, high, step, log = false, unit = "", get, set, rest } = options;
+  const { name, label, meaning = "", letter = "", step, low, log = false, unit = "", get, set, rest } = options;
   const id = nextId();
-  const inside = log ? Math.log10 : (v) => v;
-  const outside = log ? (v) => Number((10 ** v).toPrecision(3)) : (v) => v;
-  const sizes = log ? { min: inside(low), max: inside(high), step: 0.01 } : { min: low, max: high, step };
   const refused = warning(options);
   const take = (value) => {
     const good = fits(value, options);
@@ -72,11 +100,7 @@ export function slider(options) {
     set(value);
     show();
   };
-  const range = element("input", {
-    ...{ type: "range", id, "data-control": name, ...sizes },
-    oninput: () => take(outside(Number(range.value))),
-    onchange: () => rest?.(),
-  });
+  const { box, put } = sliding(options, { id, "data-control": name }, take, rest);
   const field = element("input", {
     ...{ type: "number", step: log ? low : step, "aria-label": `${label}, as a number` },
     "data-control": `${name} number`,
@@ -92,7 +116,7 @@ export function slider(options) {
   const symbol = letter ? [formula("span", letter, { class: "letter", "aria-hidden": "true" })] : [];
   const text = element("label", { for: id }, ...symbol, element("span", {}, `${label}${unitOf(unit)}`));
   const more = meaning ? [element("p", { class: "meaning" }, meaning)] : [];
-  const row = element("div", { class: "control" }, text, range, field, ...more, refused.node);
+  const row = element("div", { class: "control" }, text, box, field, ...more, refused.node);
   let last = null;
   const show = () => {
     const value = get();
@@ -102,65 +126,62 @@ export function slider(options) {
     row.hidden = value === undefined;
     if (row.hidden) return;
     refused.tell(true);
-    const at = inside(Math.max(value, log ? low : -Infinity));
-    if (document.activeElement !== range || outside(Number(range.value)) !== value) range.value = String(at);
+    put(value, `${Number(value.toPrecision(4))}${unit && unit !== "1" ? ` ${unit}` : ""}`);
     const near = Math.abs(Number(field.value) - value) <= 1e-9 * Math.abs(value);
     if (document.activeElement !== field || !near) field.value = digitsOf(value);
-    const spoken = unit && unit !== "1" ? ` ${unit}` : "";
-    range.setAttribute("aria-valuetext", `${Number(value.toPrecision(4))}${spoken}`);
     if (fits(Number(field.value), options)) mark(field, true);
   };
-  return { row, show, parts: [range, field], name };
+  return { row, show, parts: [box, field], name };
 }
 
-/** A row with a label and one box. */
-function labelled(label, box) {
-  box.id = nextId();
-  return element("div", { class: "control" }, element("label", { for: box.id }, label), box);
+/** A switch with a place for each choice: one control, moved by a press on a place, a drag or the arrow keys. */
+export function places({ name, label, choices, get, set }) {
+  const texts = choices.map(({ text }) => element("span", { "aria-hidden": "true" }, text));
+  const box = element("input", {
+    ...{ type: "range", min: 0, max: choices.length - 1, step: 1, "data-control": name, "aria-label": label },
+    oninput: () => set(choices[Number(box.value)].value),
+  });
+  const row = element("label", { class: "places", style: `--places: ${choices.length}` });
+  row.append(element("span", {}, `${label} `), element("span", { class: "switch" }, box, ...texts));
+  const show = () => {
+    const at = get();
+    row.hidden = at < 0;
+    if (row.hidden) return;
+    box.value = String(at);
+    setAttribute(box, "aria-valuetext", choices[at].spoken ?? choices[at].text);
+    texts.forEach((text, k) => text.classList.toggle("on", k === at));
+  };
+  return { row, show, name, parts: [box] };
 }
 
 /** A choice of one among named ones, of which some may be impossible. */
 export function select({ name, label, choices, possible = (_value) => true, get, set }) {
   const options = Object.entries(choices).map(([value, text]) => element("option", { value }, text));
-  const box = element("select", { "data-control": name, onchange: () => set(box.value) }, ...options);
+  const box = element("select", { id: nextId(), "data-control": name, onchange: () => set(box.value) }, ...options);
+  const row = element("div", { class: "control" }, element("label", { for: box.id }, label), box);
   const show = () => {
     for (const option of options) option.disabled = !possible(option.value);
-    box.value = get();
+    box.value = get() ?? "";
+    row.hidden = !box.value && !options.some(({ value }) => value === "");
   };
-  return { row: labelled(label, box), show, parts: [box], name };
+  return { row, show, parts: [box], name };
+}
+
+/** A box to tick; `before` is the part of its label that is left out where there is little room. */
+export function tick({ name, label, before = "", get, set }) {
+  const own = { type: "checkbox", "data-control": name, "aria-label": `${before} ${label}`.trim() };
+  const box = element("input", { ...own, onchange: () => set(box.checked) });
+  const first = before ? [element("span", { class: "before" }, `${before} `)] : [];
+  const row = element("label", { class: "tick" }, box, ...first, element("span", {}, label));
+  return { row, show: () => (box.checked = get()), parts: [box], name };
 }
 
 /** A short text, taken when it is complete. */
 export function field({ name, label, most, get, set }) {
-  const attributes = { type: "text", maxlength: most, "data-control": name, autocomplete: "off" };
+  const attributes = { type: "text", id: nextId(), maxlength: most, "data-control": name, autocomplete: "off" };
   const box = element("input", { ...attributes, onchange: () => set(box.value) });
-  return { row: labelled(label, box), show: () => (box.value = get()), parts: [box], name };
-}
-
-/** A choice of one among a few, all in sight. */
-export function radios({ name, label, choices, possible = (_value) => true, get, set }) {
-  const group = nextId();
-  const parts = Object.keys(choices).map((value) =>
-    element("input", {
-      ...{ type: "radio", name: group, value, "data-control": `${name} ${value}` },
-      onchange: () => set(value),
-    }),
-  );
-  const choice = (input) => element("label", { class: "choice" }, input, element("span", {}, choices[input.value]));
-  const row = element("div", { class: "choices", role: "radiogroup", "aria-label": label }, ...parts.map(choice));
-  const show = () => {
-    for (const input of parts) {
-      input.disabled = !possible(input.value);
-      input.checked = input.value === get();
-    }
-  };
-  return { row, show, parts, name };
-}
-
-export function checkbox({ name, label, swatch = /** @type {Node | string} */ (""), get, set }) {
-  const input = element("input", { type: "checkbox", "data-control": name, onchange: () => set(input.checked) });
-  const row = element("label", { class: "choice" }, input, swatch, element("span", {}, label));
-  return { row, show: () => (input.checked = get()), parts: [input], name };
+  const row = element("div", { class: "control" }, element("label", { for: box.id }, label), box);
+  return { row, show: () => (box.value = get()), parts: [box], name };
 }
 
 /** Fields for the numbers of a matrix, one after the other. */
@@ -168,23 +189,23 @@ export function grid(options) {
   const { name, label, rows, columns, step, names, get, set, rest } = options;
   const refused = warning(options);
   const fields = names.map((entry, k) => {
-    const field = element("input", {
+    const box = element("input", {
       ...{ type: "number", step, "aria-label": `${label}: ${entry}` },
       ...{ "data-control": `${name} ${entry}`, "data-entry": entry },
       oninput: () => {
-        const value = Number(field.value);
-        const good = field.value !== "" && fits(value, options);
-        mark(field, good);
+        const value = Number(box.value);
+        const good = box.value !== "" && fits(value, options);
+        mark(box, good);
         refused.tell(good);
         if (good) set(k, value);
       },
       onchange: () => {
-        mark(field, true);
+        mark(box, true);
         show();
         rest?.();
       },
     });
-    return field;
+    return box;
   });
   const block = element("div", { class: "grid", style: `--columns: ${columns}`, "data-rows": rows }, ...fields);
   const attributes = { class: "control block", role: "group", "aria-label": label };

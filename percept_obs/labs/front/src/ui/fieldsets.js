@@ -1,10 +1,9 @@
-// What the panels of all labs are made of: groups of controls that read from a lab's settings and change them.
+// What the drawers of all labs are made of: controls that read from a lab's settings and change them.
 
 import { schemaAt } from "../state/schema.js";
 import { changeAt, valueAt } from "../state/settings.js";
-import { checkbox, grid, radios, select, slider } from "./controls.js";
-import { element, listen } from "./dom.js";
-import { typedField } from "../old/typed.js";
+import { grid, select, slider, tick } from "./controls.js";
+import { element, listen } from "../draw/dom.js";
 
 /** Controls of a lab, whose schema says of each setting what it may be. */
 export class Fieldsets {
@@ -12,6 +11,7 @@ export class Fieldsets {
     this.lab = lab;
     this.model = lab.model;
     this.schema = lab.schema;
+    /** @type {any[]} */
     this.controls = [];
     this.shownFor = null;
     this.computed = false;
@@ -39,16 +39,6 @@ export class Fieldsets {
     return row;
   }
 
-  /** Controls under a name of their own. */
-  fieldset(legend, ...rows) {
-    return element("fieldset", {}, element("legend", {}, legend), ...rows);
-  }
-
-  /** The first controls, all in sight. */
-  first(...rows) {
-    return element("div", { class: "first" }, ...rows);
-  }
-
   /** Options of a control for the setting at a place: its schema, its name, and functions to read and change it. */
   bound(place, chosen, more = {}) {
     const { lab } = this;
@@ -62,13 +52,10 @@ export class Fieldsets {
     };
   }
 
-  numbers(...places) {
-    return places.map((place) => this.number(place));
-  }
-
-  /** Sliders for the numbers that the schema puts into a topic. */
-  numbersOf(name) {
-    return this.numbers(...Object.keys(this.schema).filter((place) => this.schema[place].topic === name));
+  /** Controls for what the schema puts into a topic. */
+  of(topic) {
+    return Object.keys(this.schema).filter((place) => this.schema[place].topic === topic)
+      .map((place) => (this.schema[place].kind === "number" ? this.number(place) : this.choice(place)));
   }
 
   number(place, more) {
@@ -87,42 +74,14 @@ export class Fieldsets {
     return this.number(place, { ...more, get });
   }
 
-  /** A choice of one among several, in a list to open, or all in sight. */
+  /** A choice of one among several. */
   choice(place, more) {
     return this.add(select(this.bound(place, true, more)));
   }
 
-  inSight(place, more) {
-    return this.add(radios(this.bound(place, true, more)));
-  }
-
-  /** Functions to read and change whether a name is in the list at a place; with a refusal one name stays. */
-  among(place, all, name, refusal = "") {
-    const { lab } = this;
-    const set = (on) => {
-      const chosen = all.filter((n) => (n === name ? on : lab.settings[place].includes(n)));
-      if (chosen.length || !refusal) return lab.change({ [place]: chosen }, true);
-      lab.say(refusal);
-      this.shownFor = null;
-      return this.show();
-    };
-    return { get: () => lab.settings[place].includes(name), set };
-  }
-
-  /** Boxes to tick for the charts. */
-  pictures() {
-    return this.boxes("pictures", "picture", "At least one chart stays.");
-  }
-
-  /** Boxes to tick for the names at a place. */
-  boxes(place, called, refusal = "") {
-    const { label, choices } = this.schema[place];
-    const all = Object.keys(choices);
-    const boxes = all.map((name) => {
-      const bound = this.among(place, all, name, refusal);
-      return this.add(checkbox({ name: `${called} ${name}`, label: choices[name], ...bound }));
-    });
-    return element("div", { class: "choices", role: "group", "aria-label": label }, ...boxes);
+  /** A box to tick. */
+  ticked(options) {
+    return this.add(tick(options));
   }
 
   /** Fields for the 3 x 3 matrix at a place. */
@@ -145,12 +104,6 @@ export class Fieldsets {
     return this.add(control);
   }
 
-  /** A field for an expression, which Python reads; a text without "=" takes the prefix. */
-  typed(place, hint, prefix = "") {
-    const { label, most } = this.schema[place];
-    return this.add(typedField(this.lab, { ...this.bound(place, true), label, most, hint, prefix }));
-  }
-
   /** Highlight the last control's letter in the formulas while the hand or the focus is on it. */
   lit(row, letter, owner = "motion") {
     linkToFormula(this.controls.at(-1), this.lab, owner, letter);
@@ -162,12 +115,6 @@ export class Fieldsets {
     const letters = schemaAt(this.schema, place).entries.map((_, k) => `${letter}${k + 1}`);
     return letters.map((each, k) => this.lit(this.number(`${place}.${k}`, moreOf(each)), each, owner));
   }
-}
-
-/** A part of the page that is closed until its title is pressed. */
-export function topic(name, title, ...inside) {
-  const summary = element("summary", { "data-control": `topic ${name}` }, title);
-  return element("details", { class: `topic ${name}` }, summary, ...inside);
 }
 
 /** Highlight a control's letter in a lab's formulas while the hand or the focus is on it. */

@@ -2,7 +2,7 @@
 
 import { readable } from "../draw/scales.js";
 import { switchOf } from "../state/settings.js";
-import { element, formula, setText } from "./dom.js";
+import { element, formula, setText } from "../draw/dom.js";
 
 /** Sections of formulas, each with an owner whose letters it has. */
 export class FormulaSheet {

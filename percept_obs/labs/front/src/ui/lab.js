@@ -1,129 +1,124 @@
 // A lab: settings in, pictures and words out, once a frame and for the latest settings only.
 
-import { Latest } from "../engine/latest.js";
 import { within } from "../engine/between.js";
+import { settled } from "../engine/errors.js";
+import { Latest } from "../engine/latest.js";
 import { Results } from "../engine/results.js";
-import { changesInWords } from "../state/settings.js";
 import { readOf } from "../engine/typed.js";
-import { verdict } from "../state/words.js";
-import { Address } from "./address.js";
 import { themeOf } from "../draw/canvas.js";
+import { element, listen } from "../draw/dom.js";
+import { roundStep } from "../draw/scales.js";
+import { changesInWords } from "../state/settings.js";
+import { Address } from "./address.js";
+import { Drawer } from "./drawer.js";
 import { LabBase } from "./lab_base.js";
-import { build } from "./layout.js";
-import { LINE, MOVING_LINE } from "../old/line_styles.js";
-import { TimeCharts } from "../old/time_charts.js";
+import { keys, messagesOf } from "./messages.js";
 import { openWorker } from "./worker.js";
+import { verdict } from "./words.js";
 
 /** Milliseconds after which a hand that has stopped has come to rest, and a zoom that goes on is another step. */
 const [REST, ZOOM_REST] = [150, 400];
 /** Milliseconds between texts: nobody reads sixty a second, and each makes the page lay itself out. */
 const BETWEEN_TEXTS = 250;
+/** No part of the time in sight is thinner than this part of the whole. */
+const THINNEST = 1e-4;
+/** Seconds from which on a run is long; it opens on its first part where all observers settle within this part of it. */
+const [LONG, EARLY] = [10, 0.1];
+/** Settling times that this first part has. */
+const SETTLINGS = 4;
+/** Elements that use the space bar themselves. */
+const OWN_SPACE = "input, select, button, summary, a";
 const NULL = /** @type {any} */ (null);
 
 /**
- * A lab that follows the hand and tells Python when the hand rests.  A lab of its own sets `planes`, `formulas` and
+ * A lab that follows the hand and tells Python when the hand rests.  A lab of its own sets `formulas`, `screen` and
  * `panel` before open(), names in `computing` the Kernels that make functions of settings and the Engine that makes
  * results of them, and gives these parts:
  *   words                       what the page calls the settings
  *   names, symbols              what settings are called in a sentence, and what letters stand for
- *   labels, chartOf             labels of the time charts by their names, and the parts of one
- *   causesOf                    settings without one cause each, in a lab that can tell some
- *   reasons, readingAt          why it happened, and values at a time, in words
+ *   charts, chartOf             titles of the charts below the first by their names, and the parts of one
+ *   reasons                     why it happened, in words
  *   summaryOf, pythonOf         what Python is told of a result, and the Python text of it
  */
 export class Lab extends LabBase {
   /** @type {{Kernels: any, Engine: any}} */
   static computing;
-  /** @type {import("../types.js").Plane[]} */
-  planes = [];
-  /** @type {import("./screen.js").FirstScreen} the screen that the lab opens with */
-  first = NULL;
-  /** @type {"first" | "workbench"} */
-  face = "workbench";
+  /** @type {import("./screen.js").Screen} */
+  screen = NULL;
+  drawer = NULL;
   formulas = NULL;
   /** Result of the kept run. */
   ghost = NULL;
-  /** Time under the pointer. */
-  peeked = NULL;
-  /** Settings at which the hand took hold. */
-  taken = NULL;
   /** Timer that runs while a zoom may go on. */
   zooming = NULL;
   down = false;
-  /** True where charts and words are to be brought to what is shown. */
-  stale = true;
   /** True once pictures and words are of the present settings, and Python was told of them. */
   settled = false;
+  /** Part of a long run that it opens on, and the run that this was found for. */
+  part = { of: "", span: NULL };
   choices = 0;
   pictures = 0;
-  /** When words, and the reading of the present time, were last written. */
+  /** When words were last written. */
   spoken = 0;
-  read = 0;
   worker = NULL;
 
   constructor(widget, model, parts) {
     super(widget, model, parts.words);
     this.parts = parts;
-    this.time = new TimeCharts(parts.labels ?? {});
     const { Kernels, Engine } = new.target.computing;
     this.kernels = new Kernels(this.model);
     this.makeEngine = () => new Engine(this.model);
     this.results = new Results(this.kernels, this.makeEngine);
     this.latest = new Latest(this.results, (error) => (error ? this.fail(new Error(error)) : this.schedule()));
+    this.hear = () => Object.assign((this.model.written ??= {}), widget.get("written"));
+    this.hear();
+    widget.on("change:written", this.hear);
     this.address = widget.get("address") ? new Address(this, widget.get("address")) : null;
   }
 
-  open(place) {
-    this.face = this.widget.get("face") ?? "first";
-    this.follow(build(this, place));
-    this.first.follow();
+  /** Build the page, with the groups of the lab's own drawer. */
+  open(place, groups) {
+    const messages = messagesOf();
+    this.drawer = new Drawer(this, this.panel, groups, messages);
+    const { body } = this.screen.build(this.drawer.more);
+    const root = element(
+      "div",
+      { class: "percept-lab" },
+      ...[messages.problem, messages.pythonError, messages.notice],
+      element("div", { class: "lab" }, body, this.drawer.body),
+      messages.silence,
+    );
+    place.append(root);
+    keys(root, this);
+    listen(root, {
+      keydown: (event) => {
+        if (event.key !== " " || event.defaultPrevented || event.target.closest(OWN_SPACE)) return;
+        event.preventDefault();
+        this.screen.clock.toggle();
+      },
+    });
+    for (const type of ["pointerdown", "pointerup", "pointercancel"]) {
+      root.addEventListener(type, () => this.hold(type === "pointerdown"), true);
+    }
+    this.follow({ root, ...messages.functions });
+    this.screen.follow();
     this.address?.follow();
-  }
-
-  /** Show the first screen, or the workbench, of the same settings at the same time. */
-  turn(face) {
-    this.face = face;
-    this.first.clock.pause();
-    this.view.turn(face);
-    this.spoken = 0;
-    this.schedule();
-    this.settle();
   }
 
   close() {
     super.close();
+    this.widget.off("change:written", this.hear);
     this.address?.close();
-    this.first?.close();
-    this.view.close();
+    this.screen?.close();
     this.worker?.terminate();
-    for (const plane of this.planes) plane.close?.();
   }
 
   get late() {
     return this.shown?.settings !== this.settings;
   }
 
-  get charts() {
-    return this.time.charts;
-  }
-
-  get drawn() {
-    return this.time.drawn;
-  }
-
-  /** Times in sight. */
-  get span() {
-    return this.time.timeline.span;
-  }
-
   get figures() {
-    return [...(this.first?.views ?? []), ...this.planes, ...Object.values(this.charts)];
-  }
-
-  /** Times that are drawn: all of them on the first screen. */
-  get sight() {
-    const { face, shown, span } = this;
-    return face === "first" && shown?.time?.length ? { low: shown.time[0], high: shown.time.at(-1) } : span;
+    return this.screen.views;
   }
 
   /** True while a hand holds something, so that what is around it stands still. */
@@ -131,7 +126,106 @@ export class Lab extends LabBase {
     return this.down || this.resting !== null;
   }
 
+  /** The run that arrows and sentence are about; none of an impossible choice. */
+  chosenOf({ runs = [] }) {
+    return runs.find(({ name }) => name === this.state.view.chosen) ?? runs[0] ?? null;
+  }
+
+  /** Name of the chosen observer. */
+  chosenName() {
+    const { observers } = this.settings;
+    const { chosen } = this.state.view;
+    return observers.includes(chosen) ? chosen : observers[0];
+  }
+
+  // The time in sight.
+
+  /** The time of a whole run: the asked duration, though the point may leave earlier. */
+  get whole() {
+    const { shown } = this;
+    if (!shown?.time?.length) return { low: 0, high: 1 };
+    const { settings, time } = shown;
+    const recorded = settings.scenario in (this.model.recordings ?? {});
+    return { low: time[0], high: recorded ? time.at(-1) : Math.max(settings.duration, time.at(-1)) };
+  }
+
+  /** The part of it that is shown. */
+  get span() {
+    const { whole } = this;
+    const [low, high] = (this.state.view.sight ?? this.part.span ?? [whole.low, whole.high])
+      .map((time) => within(time, whole.low, whole.high));
+    return high - low > THINNEST * (whole.high - whole.low) ? { low, high } : whole;
+  }
+
+  /** Show less or more of the time about a time. */
+  zoom(factor, about) {
+    const { span, whole } = this;
+    const all = whole.high - whole.low;
+    const length = within(factor * (span.high - span.low), THINNEST * all, all);
+    const now = within(about ?? this.screen.clock.present(), span.low, span.high);
+    const begin = now - ((now - span.low) / (span.high - span.low)) * length;
+    const low = within(begin, whole.low, whole.high - length);
+    this.state.look({ sight: [low, low + length] }, true);
+    clearTimeout(this.zooming);
+    this.zooming = setTimeout(() => this.state.seen(), ZOOM_REST);
+    this.looked();
+  }
+
+  showAll() {
+    const { low, high } = this.whole;
+    this.look({ sight: [low, high] });
+  }
+
+  /** Open a long run on the part where something happens, if all observers settle early. */
+  findPart() {
+    const { shown } = this;
+    const { low, high } = this.whole;
+    const of = [shown.settings.scenario, low, high].join();
+    if (this.part.of === of || this.late) return;
+    const last = Math.max(...(shown.runs ?? []).map(({ settling }) => settling ?? Infinity));
+    const early = shown.runs?.length > 0 && last > 0 && last < EARLY * (high - low) && high - low > LONG;
+    this.part = { of, span: early ? [low, Math.min(low + roundStep(SETTLINGS * last), high)] : null };
+  }
+
   // What the hand does.
+
+  /** Look at something else of the same run: a step of its own. */
+  look(changes) {
+    this.state.look(changes);
+    this.looked();
+  }
+
+  looked() {
+    this.choices += 1;
+    this.spoken = 0;
+    this.settled = false;
+    this.schedule();
+    this.drawer.show();
+    this.resize();
+    clearTimeout(this.resting);
+    this.resting = setTimeout(() => this.settle(), REST);
+  }
+
+  /** Let a chart stand below the first, or not. */
+  showChart(name, on) {
+    const { charts } = this.state.view;
+    const all = Object.keys(this.parts.charts);
+    this.look({ charts: all.filter((each) => (each === name ? on : charts.includes(each))) });
+  }
+
+  /** Let arrows and sentence be about an observer. */
+  choose(chosen) {
+    this.look({ chosen });
+  }
+
+  /** Bring the page to the open drawer and charts. */
+  resize() {
+    const { view } = this.state;
+    const { root } = this.view;
+    root.classList.toggle("open", Boolean(view.more));
+    root.style.setProperty("--charts", String(view.charts.length));
+    this.screen.showCharts(view.charts);
+  }
 
   touched(chosen) {
     this.settled = false;
@@ -140,7 +234,8 @@ export class Lab extends LabBase {
       this.view.notice("");
       const { settings, why } = this.fitted(this.settings);
       if (why) this.view.notice(why);
-      this.state.amend(settings);
+      this.state.amend({ settings });
+      this.resize();
     }
     this.openWorker();
     // What a worker finds is drawn when it comes.
@@ -151,8 +246,14 @@ export class Lab extends LabBase {
       return undefined;
     }
     // What a choice hides must be gone before the next event can reach it.
-    this.panel.show();
+    this.drawer.show();
     return this.rest();
+  }
+
+  change(changes, chosen = false) {
+    if (this.state.view.sight && ("scenario" in changes || "duration" in changes))
+      this.state.amend({ view: { ...this.state.view, sight: null } });
+    super.change(changes, chosen);
   }
 
   /** Take a step and say what it has changed. */
@@ -167,9 +268,9 @@ export class Lab extends LabBase {
     this.touched(true);
   }
 
-  /** Show settings that somebody sent; they are about no question that is open here. */
-  visit(settings) {
-    this.state.step({ settings, question: null });
+  /** Show settings that somebody sent, and how they looked at them; they are about no question that is open here. */
+  visit(settings, view) {
+    this.state.step({ settings, view, question: null });
     this.touched(true);
   }
 
@@ -179,8 +280,7 @@ export class Lab extends LabBase {
 
   /** The hand takes hold, or lets go: what it did not move follows now. */
   hold(down) {
-    if (down) this.taken = this.settings;
-    else if (this.down && this.taken !== this.settings) this.schedule();
+    if (!down && this.down) this.schedule();
     this.down = down;
   }
 
@@ -188,42 +288,7 @@ export class Lab extends LabBase {
   point(cursor) {
     if (cursor === null || cursor === this.state.cursor || this.shown?.problem) return;
     this.state.cursor = cursor;
-    this.peeked = null;
     this.redraw();
-  }
-
-  /** Show the time under a pointer until it leaves. */
-  peek(time) {
-    if (time === this.peeked) return;
-    this.peeked = time;
-    this.redraw();
-  }
-
-  /** Show another part of the time. */
-  zoom(change) {
-    const { timeline } = this.time;
-    const before = timeline.span;
-    change(timeline);
-    if (timeline.span !== before) this.state.look({ span: timeline.span, of: timeline.of });
-    clearTimeout(this.zooming);
-    this.zooming = setTimeout(() => this.state.seen(), ZOOM_REST);
-    this.view.steps(this.state);
-    this.choices += 1;
-    this.peeked = null;
-    this.schedule();
-  }
-
-  /** Let a line stand out until another one is chosen: a step of its own. */
-  choose(picked) {
-    this.state.step({ picked });
-    this.view.steps(this.state);
-  }
-
-  /** Let the line of a colour stand out, or all of them. */
-  pick(colour) {
-    if (!this.theme || this.theme.picked === colour) return;
-    this.theme = { ...this.theme, picked: colour };
-    this.schedule();
   }
 
   // Results.
@@ -256,7 +321,6 @@ export class Lab extends LabBase {
   async settle() {
     clearTimeout(this.resting);
     this.resting = null;
-    if (this.theme && this.theme.width !== LINE) this.schedule();
     if (this.pending) this.paint();
     const { settings } = this;
     try {
@@ -271,10 +335,9 @@ export class Lab extends LabBase {
     if (this.late) return;
     Object.assign(this, { shown: this.latest.shown, ghost: this.latest.ghost });
     this.speakNow();
-    this.link?.send(settings, this.parts.summaryOf(this.shown, ++this.serial, this.model));
-    this.address?.rested(settings);
-    this.describe();
-    this.view.rested();
+    this.link?.send(settings, this.parts.summaryOf(this.shown, ++this.serial, this.model), this.state.view);
+    this.address?.rested(settings, this.state.view);
+    this.screen.describe();
     this.settled = true;
   }
 
@@ -291,17 +354,19 @@ export class Lab extends LabBase {
   }
 
   get speaking() {
-    return this.stale && performance.now() - this.spoken > BETWEEN_TEXTS;
+    return performance.now() - this.spoken > BETWEEN_TEXTS;
   }
 
   /** Ask for the result of the present settings; return true if it is there. */
   compute() {
-    const { settings } = this;
+    const { settings, span, state } = this;
     if (!this.wanted(settings).every((s) => this.kernels.of(s))) {
       this.wait(settings);
       return false;
     }
-    return this.latest.want(settings, this.speaking, { ...this.sight, cursor: this.state.cursor });
+    const whole = Boolean(state.view.more) && this.speaking;
+    const complete = state.view.charts.length > 0;
+    return this.latest.want(settings, whole, { ...span, cursor: state.cursor, complete });
   }
 
   /** Draw once the functions of settings are there. */
@@ -316,15 +381,9 @@ export class Lab extends LabBase {
 
   // Pictures.
 
-  /** Draw once more, soon: what has changed. */
-  schedule() {
-    this.stale = true;
-    this.redraw();
-  }
-
-  /** Draw once more, soon: the charts only if they have changed. */
+  /** Draw once more, soon. */
   redraw() {
-    super.schedule();
+    this.schedule();
   }
 
   /** Draw the latest result, which is computed only when settings have changed. */
@@ -337,67 +396,16 @@ export class Lab extends LabBase {
       if (!shown) return;
       Object.assign(this, { shown, ghost });
       const speaking = this.speaking && shown.whole;
-      this.theme ??= { ...themeOf(this.view.root), picked: null };
-      this.draw();
+      this.theme ??= themeOf(this.view.root);
+      if (!shown.problem && shown.time.length) {
+        this.findPart();
+        this.screen.draw(shown, ghost, this.theme);
+      }
       this.pictures += 1;
       if (speaking) this.speakNow();
     } catch (error) {
       this.fail(error);
     }
-  }
-
-  draw() {
-    const { shown, ghost, theme } = this;
-    theme.resting = this.face === "workbench" && !this.held;
-    if (this.face === "first" && !shown.problem && shown.time.length) {
-      this.first.draw(shown, ghost, theme);
-      this.stale = false;
-      return;
-    }
-    theme.width = this.held ? MOVING_LINE : LINE;
-    const cursor = this.present();
-    for (const plane of this.planes) plane.draw(shown, ghost, cursor, theme);
-    if (this.stale) this.drawCharts();
-    this.stale = false;
-    this.time.point(cursor);
-    this.view.time(cursor);
-    const now = performance.now();
-    const nothing = cursor === null || shown.refusal;
-    if (!nothing && (this.held || this.view.playing()) && now - this.read < BETWEEN_TEXTS) return;
-    this.read = now;
-    this.view.read(nothing ? "" : this.parts.readingAt(shown, cursor));
-  }
-
-  /** Return the time that is shown, and let the span in sight follow the result. */
-  present() {
-    const { shown, state } = this;
-    if (shown.problem || !shown.time.length) return null;
-    const { settings, time } = shown;
-    const recorded = settings.scenario in (this.model.recordings ?? {});
-    // The asked duration, though the point may leave earlier: an axis that stays is easier to read while dragging.
-    const whole = { low: time[0], high: recorded ? time.at(-1) : settings.duration };
-    this.time.timeline.follow(whole, [settings.scenario, whole.low, whole.high].join(), state.now.sight);
-    state.cursor = within(state.cursor ?? this.span.low, this.span.low, this.span.high);
-    return this.peeked ?? state.cursor;
-  }
-
-  /** Names of the time charts that are shown. */
-  chosen() {
-    const { problem, settings } = this.shown;
-    return problem ? [] : this.model.pictures.filter((name) => settings.pictures.includes(name));
-  }
-
-  drawCharts() {
-    const { shown, ghost, theme, held, width } = this;
-    this.view.answered(this.answered());
-    const more = this.besides();
-    const partsOf = (name) => this.parts.chartOf(name, shown, ghost, theme, more);
-    this.time.draw(this.chosen(), partsOf, { theme, held, narrow: width < 600 });
-  }
-
-  /** More values for the time charts. */
-  besides() {
-    return {};
   }
 
   // Words.
@@ -406,53 +414,28 @@ export class Lab extends LabBase {
   speakNow() {
     this.spoken = performance.now();
     // What is drawn may be of settings before those that cannot be shown.
-    if (!this.late) this.view.problem((this.face === "first" && this.shown.problem) || "");
-    if (this.face === "first") return;
-    this.panel.show();
-    this.view.steps(this.state);
-    this.speak();
+    if (!this.late) this.view.problem(this.shown.problem || "");
+    this.drawer.show();
+    this.drawer.speak();
   }
 
-  speak() {
-    const { shown, model, parts } = this;
-    this.view.words({
-      verdicts: this.verdicts(),
-      reasons: parts.reasons(shown, model),
-      problem: shown.problem ?? (shown.refusal || undefined),
-      legend: [...this.legend(), ...(shown.settings.kept ? [["kept", "kept run"]] : [])],
-    });
+  /** What the words of the drawer tell: a verdict on each run, and why it came out so. */
+  told() {
+    return { verdicts: this.verdicts(), reasons: this.parts.reasons(this.shown, this.model) };
   }
 
-  /** Verdicts, each with the line that it is about. */
   verdicts() {
     const { shown, model } = this;
-    return shown.runs.map((run) => ({ which: run.order, title: run.title, text: verdict(run, shown, model) }));
-  }
-
-  legend() {
-    const { truth, runs, problem } = this.shown;
-    if (problem) return [];
-    return [...(truth ? [["truth", "truth"]] : []), ...runs.map(({ order, title }) => [order, title])];
+    return shown.runs.map((run) => ({ title: run.title, text: verdict(run, shown, model) }));
   }
 
   copy() {
     return this.parts.pythonOf(this.shown, this.model);
   }
 
-  describe() {
-    if (this.face === "first") {
-      this.first.describe();
-      return;
-    }
-    for (const plane of this.planes) plane.describe(this.shown);
-    this.time.describe();
-    this.formulas.show(this.shown.settings);
-  }
-
   /** Take what Python has found out about settings. */
   analysed(answer) {
     this.answer = answer;
-    this.view.analysis((answer.sentences ?? []).filter(Boolean));
     // What is said of it is said with the next picture, however short the last words are ago.
     this.spoken = 0;
     this.schedule();
@@ -461,5 +444,11 @@ export class Lab extends LabBase {
   /** Python's answer, if it is about what is shown. */
   answered() {
     return this.answer?.settings === this.shown?.settings ? this.answer : null;
+  }
+
+  /** True if a run's error stays in the tolerance for long enough to be sure. */
+  isSettled({ settling }) {
+    const { time, settledPart } = this.shown;
+    return settled(settling, time.at(-1) - time[0], settledPart);
   }
 }

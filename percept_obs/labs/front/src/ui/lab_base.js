@@ -30,7 +30,7 @@ export class LabBase {
     this.widget = widget;
     this.model = model;
     this.schema = schemaOf(model.schema, words);
-    this.state = new State(structuredClone(widget.get("settings")));
+    this.state = new State(structuredClone(widget.get("settings")), structuredClone(widget.get("view") ?? {}));
     this.leave = () => {};
   }
 

@@ -18,8 +18,9 @@ export class Link {
     for (const [event, listener] of Object.entries(this.listeners)) widget.on(event, listener);
   }
 
-  send(settings, summary) {
+  send(settings, summary, view = null) {
     this.widget.set("settings", settings);
+    if (view) this.widget.set("view", view);
     this.widget.set("summary", summary);
     this.sent = { settings, serial: summary.serial };
     if (!this.widget.save_changes) return;

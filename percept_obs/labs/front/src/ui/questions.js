@@ -1,7 +1,7 @@
 // The questions of a first screen: one line, three answers, and the run that shows which of them is right.
 
 import { same } from "../state/settings.js";
-import { button, element } from "./dom.js";
+import { button, element } from "../draw/dom.js";
 
 /** Questions in sight. */
 const IN_SIGHT = 3;

@@ -1,7 +1,7 @@
 // A chart as the handle of its time: one drags on it.
 
 import { within } from "../engine/between.js";
-import { element, listen } from "./dom.js";
+import { element, listen } from "../draw/dom.js";
 
 /** Let a hand drag over a view between its margins; `onPart` takes the part of the way, from 0 to 1. */
 export function scrubbed(view, { left: before, right: after }, onPart) {

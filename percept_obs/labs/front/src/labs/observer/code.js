@@ -1,6 +1,6 @@
 // The few lines of Python that make the same run.
 
-import { userDefined, durationOf, list, NOISES, script, trackings } from "../../state/code.js";
+import { userDefined, durationOf, list, NOISES, script, trackings } from "../../ui/code.js";
 import { switchOf } from "../../state/settings.js";
 import { keyOf } from "./kernels.js";
 import { isTyped } from "../../engine/typed.js";
@@ -9,11 +9,7 @@ import { seesSize, startWithSize } from "./size.js";
 /** Text of the size that an estimate starts from. */
 const SEEN = { zero: "0", chosen: "recording.outputs[0, 2]" };
 
-export function pythonOf(
-  shown,
-  model,
-  map = /** @type {ReturnType<typeof import("./bound_map.js").mapOf> | null} */ (null),
-) {
+export function pythonOf(shown, model) {
   const { settings } = shown;
   const names = new Set(["PerspectiveSystem", "track"]);
   const recorded = model.recordings[settings.scenario];
@@ -51,17 +47,6 @@ export function pythonOf(
     lines.push(
       "bound = cramer_rao(recording, form)",
       'print(f"least relative error at the end: {bound.relative[-1]:.3g}")',
-    );
-  }
-  if (map?.relative.some(Number.isFinite)) {
-    names.add("bound_map");
-    const { seconds, distance, y1, y2, resolution, period, noiseVariance } = map;
-    const measured = settings.outputs.map((o) => `"${o}", `).join("");
-    lines.push(
-      ...["found = bound_map(", "    PerspectiveSystem(motion, scenario.surface),"],
-      `    ${seconds}, ${distance}, (${measured}), (${y1.join(", ")}), (${y2.join(", ")}), ${resolution}, ` +
-      `${period}, ${noiseVariance},`,
-      ...[")", "print(found)"],
     );
   }
   const ours = settings.observers.filter((name) => !model.own[name]);

@@ -10,7 +10,6 @@ import { boundOf, noBound, variancesOf } from "./bound.js";
 import { Camera, constantMotion, shapeOf, varies } from "./camera.js";
 import { keyOf } from "./kernels.js";
 import { windowed } from "./measures.js";
-import { divides, sharesOf, withoutNoise } from "./shares.js";
 import { drawn, outputsOf, seesSize, startWithSize, withoutSize, withSize } from "./size.js";
 
 /** An image coordinate that is as good as infinite, and what is next to nothing beside a length. */
@@ -24,8 +23,6 @@ export class Engine extends Runner {
   constructor(model) {
     super(model);
     this.camera = new Camera(model, this.memory);
-    /** @type {Engine | null} for the same run without noise: what it keeps, the run itself does not drive out */
-    this.other = null;
   }
 
   /** @returns {import("../../types.js").ObserverResult} what is shown of settings: whole, or as far as is drawn */
@@ -42,7 +39,7 @@ export class Engine extends Runner {
       ...{ sampled: sized ? 3 : 2, radius: sized ? this.model.radius : 0 },
       ...{ width: 3, names, measured, hidden, hiddenNames: hidden.map((c) => names[c]) },
       ...{ tolerance, settledPart, judged, runs: [], inside: [] },
-      ...{ bound: null, shares: null, excitation: null, whole: false },
+      ...{ bound: null, excitation: null, whole: false },
     };
     if (result.problem) return { ...result, whole: true };
     const { truth, time, circle } = result;
@@ -57,45 +54,46 @@ export class Engine extends Runner {
     const kernelOf = (name) => form.observers[name][switchOf(settings, name)];
     const runs = this.followAll(settings, all, inputs, kernelOf, functions, asked);
     result.runs = sized ? runs.map(withoutSize) : runs;
-    result.bound = this.bound(settings, result, inputs, functions);
-    if (divides(settings, this.model)) {
-      this.other ??= new Engine(this.model);
-      result.shares = sharesOf(result, this.other.run(withoutNoise(settings), functions, false));
-    }
-    return whole || settings.pictures.includes("excitation") ? this.completed(result, functions) : result;
+    return whole ? this.completed(result, functions) : result;
   }
 
   /** A result with all that is read off it. */
   completed(result, functions) {
     const all = withSize(result, this.model.forms[keyOf(result.settings)], this.model.radius);
-    return { ...result, excitation: this.excitation(all, functions), whole: true };
+    const [bound, excitation] = [this.bound(result, functions), this.excitation(all, functions)];
+    return { ...result, bound, excitation, whole: true };
   }
 
-  inputs(settings, result, functions) {
+  /** The steps of a run, and the numbers that are known at them. */
+  known(settings, { time }, functions) {
     const { memory } = this;
-    const { time, measured } = result;
     const recorded = settings.scenario in this.model.recordings;
     const clock = recorded ? [time] : [settings.period, time.length];
     const lines = memory.once("grid", settings, () => stepGrid(time, LONGEST_STEP), ...clock);
-    const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
     const believe = (read) => {
       const { motion, shape } = this.camera.motion(read, functions);
       return known(read.believed ? constantMotion(read.believed) : motion, shape, lines.grid);
     };
-    const table = memory.once("known", settings, believe, lines);
+    return { lines, table: memory.once("known", settings, believe, lines) };
+  }
+
+  inputs(settings, result, functions) {
+    const { lines, table } = this.known(settings, result, functions);
+    const exact = settings.hold === "exact" ? this.exact(settings, lines.grid, functions) : null;
     const { hold, start } = settings;
-    const columns = exact && outputsOf(exact, measured, this.model.radius);
+    const columns = exact && outputsOf(exact, result.measured, this.model.radius);
     return this.layOut(result, lines, table, hold, columns, start.mode === "own");
   }
 
-  /** The least relative error that the noise leaves, where it is drawn and there is one. */
-  bound(settings, result, { grid, index, steps, known: table }, functions) {
-    const { bound, pictures } = settings;
-    if (!bound.includes("error") || !pictures.includes("error") || noBound(settings, this.model)) return null;
+  /** The least relative error that the noise leaves; null where there is none. */
+  bound(result, functions) {
+    const { settings } = result;
+    if (noBound(settings, this.model)) return null;
+    const { lines, table } = this.known(settings, result, functions);
     const make = (read) => {
       const { motion, shape } = this.camera.motion(read, functions);
-      const truly = read.believed ? known(motion, shape, grid) : table;
-      return boundOf(result, { steps, index }, truly, functions.flow, variancesOf(read, this.model));
+      const truly = read.believed ? known(motion, shape, lines.grid) : table;
+      return boundOf(result, lines, truly, functions.flow, variancesOf(read, this.model));
     };
     return this.memory.once("bound", settings, make, result.outputs, result.measured, table);
   }

@@ -1,6 +1,7 @@
-// What the camera sees, on the first screen: the point, how it moves and how it should, and standing things.
+// What the camera sees, the point, how it moves and how it should, and standing things.
 
 import { between, valueBetween, within } from "../../engine/between.js";
+import { indicesIn } from "../../engine/tables.js";
 import { affine } from "../../engine/velocities.js";
 import { apply, STANDING_THINGS } from "./standing.js";
 import { claimed, metres } from "./told.js";
@@ -30,8 +31,7 @@ export function drawImage(screen, scene, motion, note) {
   const { foe, radius, single } = seen;
   if (foe && radius) view.hatched((pen) => hatchAround(pen, on(foe), radius * scale, single, width, height));
   if (seen.simulated) drawStandingThings(screen, view, scene, seen, on);
-  const rows = shown.truth?.length ? shown.truth : shown.runs[0].estimate;
-  view.line(pathOf(rows, shown.width).map(on), theme.ink, { width: 1, alpha: seen.simulated ? 0.15 : 0.35 });
+  view.line(pathOf(scene).map(on), theme.ink, { width: 1, alpha: seen.simulated ? 0.15 : 0.35 });
   const [px, py] = on(seen.y);
   if (single === 0) view.line([[px, 0], [px, height]], theme.ink, { width: 1, dash: [2, 5] });
   if (single === 1) view.line([[0, py], [width, py]], theme.ink, { width: 1, dash: [2, 5] });
@@ -42,14 +42,15 @@ export function drawImage(screen, scene, motion, note) {
     view.ring(fx, fy, 10, theme.warning, 2.5);
     view.line([[fx - 5, fy], [fx + 5, fy]], theme.warning, { width: 2 });
     view.line([[fx, fy - 5], [fx, fy + 5]], theme.warning, { width: 2 });
-    const text = seen.simulated ? "focus of expansion" : "FOE";
-    view.tag({ id: "foe", text, at: [fx, fy], colour: theme.warning, rank: 2, gap: 14 });
+    view.tag({ id: "foe", text: "focus of expansion", at: [fx, fy], colour: theme.warning, rank: 2, gap: 14 });
   }
   const colour = theme.lines[seen.run.order];
   const [gx, gy] = on(seen.estimate);
-  const ghost = /** @type {const} */ ([within(gx, 12, width - 12), within(gy, 12, height - 12), 11]);
-  if (!why && seen.film) view.ring(...ghost, theme.raised, 6);
-  if (!why) view.ring(...ghost, colour);
+  for (const { run, state, ring, chosen } of why ? [] : seen.beads) {
+    const at = on(state).map((value, c) => within(value, ring + 1, (c ? height : width) - ring - 1));
+    if (seen.film) view.ring(at[0], at[1], ring, theme.raised, 6);
+    view.ring(at[0], at[1], ring, theme.lines[run.order], chosen ? 3 : 1.8);
+  }
   if (seen.size) view.ring(px, py, seen.size * scale, theme.ink, 2);
   view.dot(px, py, seen.film ? 3 : 6, theme.ink);
   if (seen.film && !why) drawDistances(view, scene, seen, [px, py], colour);
@@ -63,17 +64,16 @@ export function drawImage(screen, scene, motion, note) {
 }
 
 /** Middle and scale of the image in which the path lies. */
-function imageGoal(screen, { shown }, { simulated, film, foe }) {
+function imageGoal(screen, scene, { simulated, film, foe }) {
   const { width, height } = screen.image.size ?? { width: 400, height: 300 };
   if (film) {
     const [left, right, lower, upper] = film.extent;
     const scale = Math.min(width / Math.abs(right - left), height / Math.abs(upper - lower));
     return [(left + right) / 2, (lower + upper) / 2, scale];
   }
-  const rows = shown.truth?.length ? shown.truth : shown.runs[0].estimate;
   const around = (c) => (foe ? [foe[c], foe[c]] : [Infinity, -Infinity]);
   const bounds = simulated ? USUAL.map((pair) => [...pair]) : [0, 1].map(around);
-  for (const place of pathOf(rows, shown.width)) {
+  for (const place of pathOf(scene)) {
     bounds.forEach((pair, c) => {
       const value = within(place[c], -MOST, MOST);
       if (Number.isNaN(value)) return;
@@ -203,10 +203,12 @@ function hatchAround(pen, [x, y], radius, single, width, height) {
   else pen.arc(x, y, radius, 0, 2 * Math.PI);
 }
 
-/** A few hundred image points of rows of states. */
-function pathOf(rows, width) {
-  const every = Math.max(1, Math.floor(rows.length / width / 300));
+/** A few hundred image points of the truth in sight, or where there is none of the estimate. */
+function pathOf({ shown, chosen, span }) {
+  const rows = shown.truth?.length ? shown.truth : chosen.estimate;
+  const [from, to] = indicesIn(shown.time, span);
+  const every = Math.max(1, Math.floor((to - from) / 300));
   const found = [];
-  for (let k = 0; k < rows.length; k += width * every) found.push([rows[k], rows[k + 1]]);
+  for (let k = from; k <= to; k += every) found.push([rows[shown.width * k], rows[shown.width * k + 1]]);
   return found;
 }

@@ -21,7 +21,7 @@ export class Kernels extends PrintedKernels {
 
   needed(settings) {
     const key = keyOf(settings);
-    const { project, ray, foe, flow, maps } = this.model.surfaces[settings.surface];
+    const { project, ray, foe, flow } = this.model.surfaces[settings.surface];
     const { w, circle, refused, observers } = this.model.forms[key];
     const loops = settings.observers
       .filter((name) => !refused[name])
@@ -29,16 +29,12 @@ export class Kernels extends PrintedKernels {
         const way = switchOf(settings, name);
         return this.loop([key, name, way].filter(Boolean).join(" "), name, observers[name][way]);
       });
-    const bounds = {
-      error: { key: `flow on ${settings.surface}`, texts: { flow } },
-      map: { key: `map of ${key}`, texts: maps[settings.outputs.join("+")] },
-    };
     return [
       { key: "point", texts: { rates: this.model.rates, plant: this.model.plant } },
       ...typedModule(this.model, settings.motion),
       { key: settings.surface, texts: { project, ray, foe } },
       { key, texts: { ...(w && { w }), ...(circle && { circle }) } },
-      ...(noBound(settings, this.model) ? [] : settings.bound.map((place) => bounds[place])),
+      ...(noBound(settings, this.model) ? [] : [{ key: `flow on ${settings.surface}`, texts: { flow } }]),
       ...loops,
     ];
   }

@@ -1,15 +1,16 @@
-// The first screen of the observer lab: the estimate slides along its ray until the motion that it expects is seen.
+// The screen of the observer lab: the estimate slides along its ray until the motion that it expects is seen.
 
 import { Film } from "../../draw/film.js";
-import { FirstScreen } from "../../ui/screen.js";
+import { Screen } from "../../ui/screen.js";
 import { derived } from "../../engine/derived.js";
 import { between, valueBetween, within } from "../../engine/between.js";
 import { affine, imageVelocities } from "../../engine/velocities.js";
+import { button, setText } from "../../draw/dom.js";
 import { motionOf, readTrack, shapeOf, varies } from "./camera.js";
 import { translationTowards } from "./engine.js";
 import { QUESTIONS } from "./questions.js";
 import { apply, flow, isRigid, Standing, wayOf } from "./standing.js";
-import { coefficientsAt, placesOf } from "./old_scene.js";
+import { coefficientsAt, placesOf } from "./place.js";
 import { drawImage, MOST } from "./image.js";
 import { chartOf, controlsOf, radiusOf, sentence } from "./told.js";
 import { drawWorld } from "./world.js";
@@ -17,6 +18,8 @@ import { drawWorld } from "./world.js";
 const CAPTIONS = { image: "What the camera sees", world: "The world from above", axis: "Distance over time" };
 /** Where the map is not level, but along the first view. */
 const OF_FILMS = { world: "From above the camera" };
+/** Part of a distance that must be seen from above, or else the map offers to be seen from the side. */
+const FLAT = 0.8;
 /** Pixels within which the focus of expansion clicks onto the point. */
 const CLICK = 7;
 /** Pixels within which a press on the film is meant for a track. */
@@ -24,7 +27,9 @@ const NEAR = 24;
 /** Least distance of a point, in metres. */
 const [NEAREST, FARTHEST] = [0.8, 200];
 
-export class ObserverFirst extends FirstScreen {
+export class ObserverScreen extends Screen {
+  /** True once a distance was hardly seen from above. */
+  steep = false;
   /** What is seen at the time that was drawn last, in metres before the camera. */
   seen = /** @type {any} */ (null);
 
@@ -36,21 +41,46 @@ export class ObserverFirst extends FirstScreen {
     this.film = new Film(lab);
     this.image.figure.addEventListener("click", (event) => this.pick(event));
     this.focus = this.handle(this.image, {
-      ...{ name: "first foe", label: "Focus of expansion, where the camera heads" },
+      ...{ name: "foe", label: "Focus of expansion, where the camera heads" },
       onMove: (place) => this.steer(this.clicked(place)),
     });
     this.point = this.handle(this.image, {
-      ...{ name: "first point", label: "The point, its direction" },
+      ...{ name: "point", label: "The point, its direction" },
       onMove: (place) => this.aim(place),
     });
     this.far = this.handle(this.world, {
-      ...{ name: "first distance", label: "The point, its distance", nudge: 0.25 },
+      ...{ name: "distance", label: "The point, its distance", nudge: 0.25 },
       onMove: (place) => this.reach(place),
     });
   }
 
+  build(more) {
+    const { lab } = this;
+    const turn = () => lab.look({ side: !lab.state.view.side });
+    this.sideButton = button("From the side", turn, { class: "side", "data-control": "side", hidden: true });
+    this.world.figure.append(this.sideButton);
+    return super.build(more);
+  }
+
+  /** Coordinates that the map shows across and upwards. */
+  get axes() {
+    return this.lab.state.view.side ? [2, 1] : [0, 2];
+  }
+
+  /** Offer the other side of the map where this one hides most of a distance. */
+  showSide({ inWorld, place, camera }) {
+    const { side } = this.lab.state.view;
+    const way = inWorld(place).map((value, k) => value - camera[k]);
+    this.steep ||= Math.hypot(way[0], way[2]) < FLAT * Math.hypot(...way);
+    this.sideButton.hidden = !this.steep && !side;
+    setText(this.sideButton, side ? "From above" : "From the side");
+    const caption = side ? "The world from the side" : (this.captions.world ?? "");
+    if (this.world.caption) setText(this.world.caption, caption);
+  }
+
   renew() {
     this.standing.begin();
+    this.steep = false;
   }
 
   // What a hand does: it moves what it sees now, so the present picture stays, and the past swings.
@@ -100,10 +130,11 @@ export class ObserverFirst extends FirstScreen {
   }
 
   /** Put the point at the place on its ray that is nearest to a place of the map. */
-  reach([x, z]) {
-    const { camera, point, place } = this.seen;
-    const along = [point[0] - camera[0], point[2] - camera[2]];
-    const part = ((x - camera[0]) * along[0] + (z - camera[2]) * along[1]) / Math.hypot(...along) ** 2;
+  reach(there) {
+    const { place } = this.seen;
+    const [camera, point] = [this.seen.camera, this.seen.point].map((where) => this.axes.map((k) => where[k]));
+    const along = [0, 1].map((k) => point[k] - camera[k]);
+    const part = along.reduce((sum, way, k) => sum + (there[k] - camera[k]) * way, 0) / Math.hypot(...along) ** 2;
     const distance = Math.hypot(...place);
     const wanted = within(part * distance, NEAREST, FARTHEST);
     this.moveTo(this.lab.settings.b, place.map((value) => (value * wanted) / distance));
@@ -157,9 +188,8 @@ export class ObserverFirst extends FirstScreen {
   /** Places in metres before the camera: of the point, of the estimate, and functions of the settings. */
   look(scene) {
     const { lab } = this;
-    const { shown, at, now } = scene;
+    const { shown, chosen: run, at, now } = scene;
     const { settings, truth, width } = shown;
-    const [run] = shown.runs;
     const functions = lab.kernels.of(settings);
     const shape = shapeOf(settings);
     const placeOf = placesOf(lab, shown);
@@ -173,7 +203,13 @@ export class ObserverFirst extends FirstScreen {
     const image = (copy) => Array.from(functions.project([...copy, ...shape], new Float64Array(3)));
     const speedsOf = (place, { A, b }) => imageVelocities(place, (copy) => affine(A, b, copy), image);
     const place = placeOf(state ?? estimate);
-    const guess = estimate[2] > 1e-4 ? placeOf(estimate) : null;
+    const guessOf = (state) => (state[2] > 1e-4 ? placeOf(state) : null);
+    const guess = guessOf(estimate);
+    // The chosen one last, so that it lies on top.
+    const beads = [...shown.runs.filter((each) => each !== run), run].map((each, k, all) => {
+      const at = stateOf(each.estimate);
+      return { run: each, state: at, guess: guessOf(at), chosen: each === run, ring: 11 + 5 * (all.length - 1 - k) };
+    });
     const expected = guess && placeOf([y[0], y[1], estimate[2]]);
     const toWorld = this.worldOf(settings);
     const world = toWorld?.(now);
@@ -184,7 +220,7 @@ export class ObserverFirst extends FirstScreen {
     const other = recorded?.measured && derived(recorded, "other", () => otherOf(recorded, rayOf));
     this.whyButton.hidden = !state;
     this.seen = {
-      ...{ state, estimate, y: y.slice(0, 2), motion, image, place, guess, run, inWorld, functions },
+      ...{ state, estimate, y: y.slice(0, 2), motion, image, place, guess, beads, run, inWorld, functions },
       ...{ toWorld, simulated, recorded, other, ray: rayOf(estimate), tracks: [] },
       ...{ film, up: film && film.extent[2] > film.extent[3] ? -1 : 1 },
       ...{ camera: inWorld([0, 0, 0]), point: inWorld(place), truth: Boolean(state) },
@@ -204,6 +240,7 @@ export class ObserverFirst extends FirstScreen {
   }
 
   drawWorld(scene, motion, note) {
+    this.showSide(this.seen);
     return drawWorld(this, scene, motion, note);
   }
 

@@ -1,10 +1,9 @@
 // Why it happened, in words.
 
 import { readable } from "../../draw/scales.js";
-import { leavingInWords, percent } from "../../state/words.js";
+import { leavingInWords, percent } from "../../ui/words.js";
 import { noBound } from "./bound.js";
 import { varies } from "./camera.js";
-import { lateNoise } from "./shares.js";
 
 const UNEXCITED = 1e-4;
 
@@ -25,9 +24,8 @@ export function reasons(shown, model) {
     );
   }
   if (measured.length < hiddenNames.length) {
-    const [name, drawn] = [names[measured[0]], shown.truth && !(settings.scenario in model.recordings)];
-    const others = drawn ? ` Drawn in the image are two other points that look the same to ${name} now.` : "";
-    found.push(`Only ${name} is measured: one instant never tells both hidden coordinates, some seconds may.${others}`);
+    const only = names[measured[0]];
+    found.push(`Only ${only} is measured: one instant never tells both hidden coordinates, some seconds may.`);
   }
   if (shown.foeTowards) {
     found.push("The focus of expansion is at infinity: the translation is parallel to the image.");
@@ -49,14 +47,8 @@ export function reasons(shown, model) {
     );
   }
   if (settings.believed) found.push("The observers believe another motion than the true one.");
-  if (settings.noise.size > 0) found.push(noiseInWords(shown));
-  found.push(...boundInWords(shown));
-  if (settings.bound.includes("map") && !noBound(settings, model)) {
-    found.push(
-      "The darker a place in the image, the less any unbiased observer can know of the distance of a point that is " +
-        "first seen there. Where there is no shade, the point comes behind the camera.",
-    );
-  }
+  if (settings.noise.size > 0) found.push(NOISY);
+  found.push(...boundInWords(shown, model));
   const biased = shown.runs.some((run) => settings.gains[run.name].noise_variance === 0);
   if (settings.noise.size > 0 && measured.length === 1 && biased) {
     found.push("The same noise is in w and in the innovation: their product has a mean, which pushes the estimate.");
@@ -64,24 +56,15 @@ export function reasons(shown, model) {
   return found;
 }
 
-/** Sentence on the error by noise, with the chart's own parts where they are drawn. */
-function noiseInWords({ shares }) {
-  const added = shares && lateNoise(shares);
-  if (!(added > 0))
-    return "Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.";
-  return (
-    `After ${readable(shares.time[Math.floor(shares.time.length / 2)], 3)} s noise adds ${percent(added, 2)} to the ` +
-    "error (filled in its chart). The thin dashed line is the error without noise. More gain lets it fall faster and " +
-    "lifts what noise adds."
-  );
-}
+const NOISY =
+  "Every innovation carries the noise of its sample, and gains multiply it: more gain is faster, and noisier.";
 
 /** Sentence on the bound. */
-function boundInWords({ settings, bound }) {
-  if (!bound) return [];
+function boundInWords({ settings, bound }, model) {
+  if (!bound) return settings.noise.size > 0 ? [noBound(settings, model)].filter(Boolean) : [];
   const left = Number.isFinite(bound.at(-1)) ? ` At the end it is ${percent(bound.at(-1), 2)} of the distance.` : "";
   const uniform = settings.noise.kind === "uniform" ? " It is that of Gaussian noise of the same variance." : "";
-  return [`The dotted line is the bound: no unbiased observer has a smaller root mean square error; one run alone ` +
+  return [`The dotted line of the error chart is the bound: no unbiased observer has a smaller root mean square error; one run alone ` +
     `may be below it at times.${left}${uniform}`];
 }
 

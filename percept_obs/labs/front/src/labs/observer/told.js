@@ -1,13 +1,15 @@
 // What the first screen of the observer lab tells: the chart, the sentence, and its controls.
 
-import { places, range, select } from "../../ui/handy.js";
+import { linesOf } from "../../draw/lines.js";
+import { places, range, select } from "../../ui/controls.js";
+import { indicesIn } from "../../engine/tables.js";
 import { columnOf, derived } from "../../engine/derived.js";
-import { settled } from "../../engine/errors.js";
 import { between } from "../../engine/between.js";
-import { changeAt, same } from "../../state/settings.js";
-import { claimedDistances } from "../../old/space.js";
-import { percent } from "../../state/words.js";
-import { KEPT } from "../../draw/looks.js";
+import { element } from "../../draw/dom.js";
+import { readable } from "../../draw/scales.js";
+import { changeAt, same, valueAt } from "../../state/settings.js";
+import { claimedDistances } from "../../engine/errors.js";
+import { percent } from "../../ui/words.js";
 import { shapeOf } from "./camera.js";
 
 const OUTPUTS = [
@@ -21,32 +23,30 @@ const [FAR, NEARBY] = [999, 2];
 const WIDE = 0.3;
 
 export function chartOf(screen, scene) {
-  const { shown, ghost, theme, secret, now } = scene;
-  const { time, truth, settings } = shown;
-  const [run] = shown.runs;
+  const { shown, theme, secret, now, chosen, span } = scene;
+  const { time, truth } = shown;
   const { other } = screen.seen;
+  const [from, to] = indicesIn(time, span);
   const distances = (result, rows) => distancesOf(screen, result, rows);
   const actual = truth?.length ? distances(shown, truth) : null;
-  const found = distances(shown, run.estimate);
-  const most = actual ? Math.max(...actual.filter(Number.isFinite)) : median(found) * 2;
-  const near = found.filter((value) => value < 1.5 * most);
-  const colour = theme.lines[run.order];
-  const since = actual && isSettled(shown) && run.settling > 0 ? time[0] + run.settling : Infinity;
+  const lines = linesOf(scene, (result, { estimate }) => distances(result, estimate), () => actual);
+  const inSight = (values) => Array.from(values.subarray(from, to + 1)).filter(Number.isFinite);
+  const found = lines.filter(({ id }) => id !== "true" && id !== "kept").map(({ values }) => inSight(values));
+  const most = actual ? inSight(actual).reduce((high, value) => Math.max(high, value), 0) : median(found.at(-1)) * 2;
+  const near = found.flatMap((values) => values.filter((value) => value < 1.5 * most));
+  const since = actual && screen.lab.isSettled(chosen) && chosen.settling > 0 ? time[0] + chosen.settling : Infinity;
   const told = secret ? since <= now : since < Infinity;
-  const at = told ? between(time, since) : null;
-  const within10 = `within ${percent(shown.tolerance, 6)} from ${since.toFixed(1)} s`;
+  const value = told ? distances(shown, chosen.estimate)[between(time, since).sample] : 0;
+  const text = `within ${percent(shown.tolerance, 6)} from ${since.toFixed(1)} s`;
   return {
-    end: Math.max(settings.scenario in screen.lab.model.recordings ? 0 : settings.duration, time[time.length - 1]),
-    high: 1.2 * Math.max(most, ...near),
+    scale: { low: 0, high: 1.2 * near.reduce((high, each) => Math.max(high, each), most) },
     unit: "m",
     lines: [
-      ...(ghost ? [keptLine(scene.kept, ghost.time, distances(ghost, ghost.runs[0].estimate), theme)] : []),
-      { id: "estimate", text: "estimate", time, values: found, colour, width: 3, secret },
-      ...(actual ? [{ id: "true", text: "true", time, values: actual, colour: theme.ink, width: 1.6 }] : []),
+      ...lines,
       ...(other ? [{ id: "other", text: other.name, ...other, colour: theme.ink, width: 1.6 }] : []),
     ],
     spans: unseenSpans(shown),
-    found: at ? { time: since, value: found[at.sample], text: within10, colour } : null,
+    found: told ? [{ time: since, value, text, colour: theme.lines[chosen.order] }] : [],
   };
 }
 
@@ -79,7 +79,7 @@ export function sentence(screen, scene) {
   const { shown, now, end, why } = scene;
   const { settings, time } = shown;
   const { seen } = screen;
-  const [run] = shown.runs;
+  const { chosen: run } = scene;
   if (seen.other) return `A point without a truth: compare its distance with the ${seen.other.name}.`;
   if (!seen.truth) return "A recording without a truth: the estimate alone is shown.";
   const near = unseenSpans(shown).some(({ begin, end: last }) => begin <= now && now <= last);
@@ -87,7 +87,7 @@ export function sentence(screen, scene) {
     if (near) return "One ray, three distances: here all of them move alike.";
     return "One ray, three distances: the nearer a point is, the faster it moves.";
   }
-  const found = isSettled(shown) && run.settling <= now - time[0];
+  const found = screen.lab.isSettled(run) && run.settling <= now - time[0];
   const distance = metres(Math.hypot(...seen.place));
   const ratio = seen.guess ? Math.hypot(...seen.guess) / Math.hypot(...seen.place) : Infinity;
   if (run.divergedAt !== null) return `The estimate left every bound after ${run.divergedAt.toFixed(1)} s.`;
@@ -106,52 +106,65 @@ export function sentence(screen, scene) {
 
 export function controlsOf(lab) {
   const allowed = () => lab.model.surfaces[lab.settings.surface].outputs;
-  const observer = () => lab.settings.observers[0];
-  const gain = () => lab.model.observers[observer()].gains[0];
   const change = (changes) => {
-    lab.first.touch();
+    lab.screen.touch();
     lab.change(changes);
   };
   const rest = () => lab.rest();
-  const { low, high } = gain();
   const { recordings } = lab.model;
   const filmed = Object.keys(recordings).filter((name) => recordings[name].film !== null);
   const track = select({
-    ...{ name: "first track", label: "Track", choices: filmed },
+    ...{ name: "track", label: "Track", choices: Object.fromEntries(filmed.map((name) => [name, name])) },
     get: () => lab.settings.scenario,
-    set: (name) => lab.first.choose(name),
+    set: (name) => lab.screen.choose(name),
   });
+  const noise = lab.schema.noise.entries.size;
   return [
     ...(filmed.length > 1 ? [track] : []),
     places({
-      ...{ name: "first outputs", label: "Measured", choices: OUTPUTS },
+      ...{ name: "outputs", label: "Measured", choices: OUTPUTS },
       get: () => (allowed().length < 2 ? -1 : OUTPUTS.findIndex(({ value }) => same(value, lab.settings.outputs))),
       set: (outputs) => {
         if (!allowed().some((names) => same(names, outputs))) return;
-        lab.first.touch();
+        lab.screen.touch();
         lab.change({ outputs }, true);
       },
     }),
+    mainGain(lab, change, rest),
     range({
-      ...{ name: "first gain", label: "Gain", low: Math.max(low, 1), high, log: true, rest },
-      get: () => (gain().high > 1 ? lab.settings.gains[observer()][gain().name] : null),
-      set: (value) => change(changeAt(lab.settings, `gains.${observer()}.${gain().name}`, value)),
-    }),
-    range({
-      ...{ name: "first noise", label: "Noise", low: 0, high: 0.01, step: 0.0005, rest },
-      get: () => (lab.settings.scenario in lab.model.recordings ? null : lab.settings.noise.size),
+      ...{ name: "noise size", label: "Noise", low: noise.low, high: noise.high, step: noise.step, rest },
+      get: () => (lab.settings.scenario in recordings ? null : lab.settings.noise.size),
       set: (size) => change({ noise: { ...lab.settings.noise, size } }),
     }),
   ];
 }
 
-function keptLine(text, time, values, theme) {
-  return { id: "kept", text, time, values, colour: theme.kept, dash: KEPT };
-}
-
-/** True if the first observer's error stays in the tolerance for long enough to be sure. */
-function isSettled({ runs: [{ settling }], time, settledPart }) {
-  return settled(settling, time.at(-1) - time[0], settledPart);
+/** The first gain of the chosen observer, if it has one. */
+function mainGain(lab, change, rest) {
+  const gain = () => lab.model.observers[lab.chosenName()].gains[0];
+  const made = {};
+  const row = element("div", { class: "sliding" });
+  const of = () => {
+    const { name, low, high } = gain();
+    const key = [lab.chosenName(), name].join(".");
+    if (made.key === key) return made.control;
+    const place = `gains.${key}`;
+    made.key = key;
+    made.control = range({
+      ...{ name: "gain", label: name === "gain" ? "Gain" : name.replaceAll("_", " "), rest },
+      ...(low > 0 && high / low >= 50 ? { low, high, log: true } : { low, high, step: (high - low) / 1000 }),
+      get: () => valueAt(lab.settings, place),
+      set: (value) => lab.kernels.allows(lab.chosenName(), name, value) && change(changeAt(lab.settings, place, value)),
+      text: (value) => readable(value),
+    });
+    row.replaceChildren(made.control.row);
+    return made.control;
+  };
+  const show = () => {
+    row.hidden = !gain();
+    if (gain()) of().show();
+  };
+  return { row, show, name: "gain" };
 }
 
 /** Radius in the image of the circle in which an instant tells too little; a point that is seen larger leaves none. */

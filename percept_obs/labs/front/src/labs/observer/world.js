@@ -1,12 +1,13 @@
-// The world from above, on the first screen: it stands still, and the camera drives; the estimate is a bead on the ray.
+// The world from above, it stands still, and the camera drives; the estimate is a bead on the ray.
 
 import { drawCamera, drawCone, drawGround } from "../../draw/map.js";
+import { indicesIn } from "../../engine/tables.js";
 import { between, valueBetween, within } from "../../engine/between.js";
 import { same } from "../../state/settings.js";
 import { COPIES } from "../../engine/velocities.js";
 import { shapeOf } from "./camera.js";
 import { apply, flow, STANDING_THINGS } from "./standing.js";
-import { placesOf } from "./old_scene.js";
+import { placesOf } from "./place.js";
 import { HERE } from "./image.js";
 import { metres } from "./told.js";
 
@@ -19,13 +20,14 @@ export function drawWorld(screen, scene, motion, note) {
   const [cx, cz, scale] = /** @type {number[]} */ (view.at);
   const x = (value) => width / 2 + (value - cx) * scale;
   const y = (value) => height / 2 - 6 - (value - cz) * scale;
-  const on = (place) => [x(place[0]), y(place[2])];
+  const [across, ahead] = screen.axes;
+  const on = (place) => [x(place[across]), y(place[ahead])];
   drawGround(view, [cx, cz, scale], { x, y }, theme);
   if (!screen.resetButton.hidden) view.avoid(width - 62, 27, 62, 27);
   const camera = on(seen.camera);
   const reach = (1.2 * Math.hypot(width, height)) / scale;
   const along = (direction) => {
-    const size = reach / Math.max(Math.hypot(direction[0], direction[2]), 1e-9);
+    const size = reach / Math.max(Math.hypot(direction[across], direction[ahead]), 1e-9);
     return on(seen.inWorld(direction.map((value) => size * value)));
   };
   drawSight(screen, view, camera, along, theme);
@@ -41,11 +43,11 @@ export function drawWorld(screen, scene, motion, note) {
     }
   }
   const { b } = seen.motion;
-  const ahead = along(b.map((value) => (seen.toWorld ? -value : value)));
-  view.line([camera, ahead], theme.warning, { dash: [6, 5] });
-  view.avoidLine(camera, ahead);
-  const share = 60 / Math.max(Math.hypot(ahead[0] - camera[0], ahead[1] - camera[1]), 60);
-  const named = [0, 1].map((c) => camera[c] + share * (ahead[c] - camera[c]));
+  const goal = along(b.map((value) => (seen.toWorld ? -value : value)));
+  view.line([camera, goal], theme.warning, { dash: [6, 5] });
+  view.avoidLine(camera, goal);
+  const share = 60 / Math.max(Math.hypot(goal[0] - camera[0], goal[1] - camera[1]), 60);
+  const named = [0, 1].map((c) => camera[c] + share * (goal[c] - camera[c]));
   view.tag({ id: "heading", text: "heading", at: named, colour: theme.warning, rank: 7, gap: 4, towards: [1, 0] });
   const turn = Math.atan2(along([0, 0, 1])[0] - camera[0], camera[1] - along([0, 0, 1])[1]);
   const ray = along(seen.place);
@@ -59,7 +61,7 @@ export function drawWorld(screen, scene, motion, note) {
     view.line(way, theme.ink, { width: 2, alpha: 0.35 });
     drawBelieved(screen, view, scene, on, colour, way[0]);
   } else if (shown.truth?.length) view.line(past(shown.truth), theme.ink, { width: 1, alpha: 0.35 });
-  view.line(past(seen.run.estimate), colour, { alpha: 0.4 });
+  for (const { run } of seen.beads) view.line(past(run.estimate), theme.lines[run.order], { alpha: 0.4 });
   const point = on(seen.point);
   if (why && seen.truth) drawCopies(view, seen, on, theme);
   drawCamera(view, camera, turn, theme);
@@ -70,7 +72,7 @@ export function drawWorld(screen, scene, motion, note) {
     if (kept[2] > 1e-4) view.ring(...on(seen.inWorld(placeOf(kept))), 6, theme.kept, 1.5);
   }
   if (seen.truth) view.dot(point[0], point[1], 7, theme.ink);
-  if (!why) drawEstimate(view, seen, on, colour);
+  if (!why) for (const bead of seen.beads) drawBead(view, seen, bead, on, theme);
   if (seen.truth && !why) {
     const text = `true ${metres(Math.hypot(...seen.place))}`;
     view.tag({ id: "true", text, at: point, colour: theme.ink, rank: 1, gap: 11 });
@@ -78,7 +80,7 @@ export function drawWorld(screen, scene, motion, note) {
   if (note) view.note(point[0], point[1] + 8, note.text);
   view.end();
   const frame = { box: { left: 8, top: 8, width: width - 16, height: height - 16 }, scale, x, y };
-  screen.far.stand(seen.movable && seen.truth ? [seen.point[0], seen.point[2]] : null, frame, screen.lab.late);
+  screen.far.stand(seen.movable && seen.truth ? screen.axes.map((k) => seen.point[k]) : null, frame, screen.lab.late);
   return moving;
 }
 
@@ -118,24 +120,26 @@ function pastOf(screen, { shown, now }, rows) {
 }
 
 function worldGoal(screen, scene, { toWorld, inWorld, place }) {
-  const { shown, why } = scene;
+  const { shown, why, span, chosen } = scene;
   const { settings, truth, time, width } = shown;
+  const [from, to] = indicesIn(time, span);
   const placeOf = placesOf(screen.lab, shown);
   const box = [Infinity, -Infinity, Infinity, -Infinity];
-  const take = (/** @type {number[]} */ [x, , z]) => {
+  const take = (/** @type {number[]} */ place) => {
+    const [x, z] = screen.axes.map((k) => place[k]);
     if (!Number.isFinite(x + z)) return;
     [box[0], box[1]] = [Math.min(box[0], x), Math.max(box[1], x)];
     [box[2], box[3]] = [Math.min(box[2], z), Math.max(box[3], z)];
   };
-  const rows = truth?.length ? truth : shown.runs[0].estimate;
+  const rows = truth?.length ? truth : chosen.estimate;
   for (let k = 0; k <= 40; k++) {
-    const sample = Math.round((k * (time.length - 1)) / 40);
+    const sample = Math.round(from + (k * (to - from)) / 40);
     const map = toWorld?.(time[sample]);
     const there = (where) => (map ? apply(map, where) : where);
     const stateOf = (table) => [0, 1, 2].map((c) => table[width * sample + c]);
     take(there([0, 0, 0]));
     take(there(placeOf(stateOf(rows))));
-    const first = stateOf(shown.runs[0].estimate);
+    const first = stateOf(chosen.estimate);
     if ((k === 0 || k === 40) && first[2] > 0 && 1 / first[2] < 1.6 / stateOf(rows)[2]) take(there(placeOf(first)));
   }
   if (why) take(inWorld(place.map((value) => 2 * value)));
@@ -144,8 +148,8 @@ function worldGoal(screen, scene, { toWorld, inWorld, place }) {
     take(apply(toWorld(scene.end), began));
   }
   const size = screen.world.size ?? { width: 350, height: 300 };
-  const [across, ahead] = [box[1] - box[0], box[3] - box[2]];
-  const scale = Math.min((size.width - 130) / (across + 0.1 * ahead), (size.height - 90) / (1.01 * ahead));
+  const [wide, high] = [box[1] - box[0], box[3] - box[2]];
+  const scale = Math.min((size.width - 130) / (wide + 0.1 * high), (size.height - 90) / Math.max(1.01 * high, 0.05 * wide));
   return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, Math.max(scale, 1e-6)];
 }
 
@@ -189,18 +193,21 @@ function drawCopies(view, { place, inWorld }, on, theme) {
   });
 }
 
-/** The estimate, a bead on the ray; an arrow at the rim where it is out of the picture. */
-function drawEstimate(view, { guess, inWorld, place }, on, colour) {
+/** An estimate, a bead on the ray; an arrow at the rim where it is out of the picture. */
+function drawBead(view, { inWorld, place, beads }, { run, guess, ring, chosen }, on, theme) {
   const { width, height } = view;
+  const colour = theme.lines[run.order];
   const where = on(inWorld(guess ?? place.map((value) => 1e5 * value)));
   const [u, v] = [within(where[0], 18, width - 18), within(where[1], 18, height - 18)];
-  const text = `estimate ${guess ? metres(Math.hypot(...guess)) : "∞"}`;
+  const name = beads.length > 1 ? run.title : "estimate";
+  const text = `${name} ${guess ? metres(Math.hypot(...guess)) : "∞"}`;
   const inside = Math.hypot(u - where[0], v - where[1]) < 1;
-  if (inside) view.ring(u, v, 11, colour, 3.5);
+  if (inside) view.ring(u, v, ring, colour, chosen ? 3.5 : 1.8);
   else {
     const length = Math.hypot(where[0] - u, where[1] - v);
     const [dx, dy] = [(10 * (where[0] - u)) / length, (10 * (where[1] - v)) / length];
     view.arrow([u - dx, v - dy], [2 * dx, 2 * dy], colour, 3);
   }
-  view.tag({ id: "estimate", text, at: [u, v], colour, rank: 0, gap: 13 });
+  const rank = chosen ? 0 : 2;
+  view.tag({ id: chosen ? "estimate" : run.name, text, at: [u, v], colour, rank, gap: ring + 2 });
 }

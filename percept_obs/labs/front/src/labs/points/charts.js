@@ -1,76 +1,74 @@
-// What each time chart shows of a run: lines, scale, bars where a point is not seen.
+// The charts of many points besides the first: lines, scale, bars where a point is not seen.
 
-import { columnOf } from "../../engine/derived.js";
-import { readable } from "../../draw/scales.js";
-import { percent } from "../../state/words.js";
-import { decades, distancesAround, line, withKept } from "../../draw/lines.js";
-import { BOUND, DASHES, FIT, KEPT, SOLID } from "../../draw/looks.js";
+import { columnOf, derived } from "../../engine/derived.js";
+import { decades, distancesAround, keptLine } from "../../draw/lines.js";
+import { percent } from "../../ui/words.js";
 
-export const LABELS = {
-  error: "Norm of the error over time",
-  depth: "Depth of each point over time",
-  points: "Error of each point over time",
-  gramian: "Smallest eigenvalue of the Gramian over time",
+/** Titles of the charts, by their names. */
+export const CHARTS = {
+  error: "Error of the whole state",
+  points: "Relative error of each point",
+  depth: "Depth of each point",
+  gramian: "Smallest eigenvalue of the Gramian",
 };
 
 const FLOOR = 1e-9;
 
-export function chartOf(name, shown, ghost, theme, more) {
-  return { ...BUILD[name](shown, ghost, theme, more), bars: name === "gramian" ? [] : barsOf(shown, theme) };
-}
-
 const BUILD = {
-  error(shown, ghost, theme, { bound }) {
-    const { size, fit } = shown;
-    const lines = withKept("error", shown, ghost, theme, (result) => [result.time, result.size]);
-    const end = shown.time.at(-1);
+  error({ shown, ghost, theme, kept, secret }, span, bound) {
+    const { size, fit, time } = shown;
+    const end = time.at(-1);
+    const lines = [
+      ...(ghost ? [keptLine(kept, ghost.time, ghost.size, theme)] : []),
+      { id: "estimate", text: "error", time, values: size, colour: theme.lines[0], width: 3, secret },
+    ];
+    const straight = (id, text, times, values, colour) => ({ id, text, time: times, values, colour, dash: [5, 3] });
     if (fit) {
       const ends = [fit.begin, end];
       const values = ends.map((t) => Math.exp(fit.level - fit.rate * t));
-      lines.push(line("fitted decay", ends, values, theme.lines[1], FIT));
+      lines.push(straight("fit", "fitted decay", ends, values, theme.lines[1]));
     }
-    if (bound !== null) {
-      const values = [size[0], size[0] * Math.exp(-bound * end)];
-      lines.push(line("guaranteed decay", [0, end], values, theme.lines[2], BOUND));
-    }
-    return { title: "Error |ρ| of the whole state, in m", lines, scale: decades(lines, 1e-8, 1e6) };
+    if (bound !== null)
+      lines.push(straight("bound", "guaranteed", [0, end], [size[0], size[0] * Math.exp(-bound * end)], theme.warning));
+    return { lines, unit: "m", scale: decades(lines, span, 1e-8, 1e6) };
   },
-  depth(shown, ghost, theme) {
-    const each = (called, { time, points }, rows, styleOf) =>
-      Array.from({ length: points }, (_, k) =>
-        line(`${called} of point ${k + 1}`, time, columnOf(rows, points, k), ...styleOf(k)),
-      );
-    const kept = ghost ? each("kept depth", ghost, ghost.estimated.depths, () => [theme.kept, KEPT]) : [];
-    const certain = each("true depth", shown, shown.depths, (k) => [theme.lines[k], SOLID]);
-    const estimated = each("depth", shown, shown.estimated.depths, (k) => [theme.lines[k], DASHES[k]]);
-    const lines = [...kept, ...certain, ...estimated];
-    const scale = distancesAround(lines, (l) => certain.includes(l));
-    return { title: "Depth in m, true (solid) and estimated", lines, scale };
+  points({ shown, theme, secret }, span) {
+    const { time, relative, tolerance } = shown;
+    const lines = relative.map((values, k) => ({
+      ...{ id: `point ${k}`, text: `point ${k + 1}`, time, colour: theme.lines[k], secret },
+      values: derived(values, "percent", () => values.map((value) => 100 * value)),
+    }));
+    const level = { value: 100 * tolerance, text: `tolerance ${percent(tolerance, 6)}` };
+    return { lines, unit: "%", level, scale: decades(lines, span, 1e-6, 1e6, level.value) };
   },
-  points({ time, relative, tolerance, settling }, ghost, theme) {
-    const lines = relative.map((values, k) => line(`error of point ${k + 1}`, time, values, theme.lines[k], DASHES[k]));
-    ghost?.relative.forEach((values, k) => {
-      lines.unshift(line(`kept error of point ${k + 1}`, ghost.time, values, theme.kept, KEPT));
-    });
-    const settled = settling > 0 && settling < Infinity;
-    const event = { time: time[0] + settling, text: `all in: ${readable(settling)} s`, colour: theme.ink };
-    const events = settled ? [event] : [];
-    const title = `Relative error of each point; tolerance ${percent(tolerance, 6)}`;
-    return { title, lines, scale: decades(lines, 1e-8, 1e6, tolerance), level: tolerance, events };
+  depth({ shown, theme, secret }, span) {
+    const { time, points, depths, estimated } = shown;
+    const lines = Array.from({ length: points }, (_, k) => {
+      const [found, right] = [estimated.depths, depths].map((rows) => columnOf(rows, points, k));
+      const both = { time, colour: theme.lines[k] };
+      const estimate = { id: `point ${k}`, values: found, width: 3, secret, ...both };
+      return [estimate, { id: "true", text: `point ${k + 1}`, values: right, width: 1.2, ...both }];
+    }).flat();
+    return { title: "Depth of each point; thick: estimated", lines, unit: "m", scale: distancesAround(lines, span) };
   },
-  gramian(shown, ghost, theme, { unseen }) {
-    const { time, smallest, largest, window } = shown.gramian;
-    const floored = ({ gramian }) => [gramian.time, gramian.smallest.map((value) => Math.max(value, FLOOR))];
-    const limit = line("limit of what is seen", time, largest.map((value) => unseen * value), theme.warning, BOUND);
-    const lines = withKept("smallest eigenvalue", shown, ghost, theme, floored);
-    const low = smallest.some((value, k) => value < 100 * unseen * largest[k]);
-    const scale = decades(low ? [...lines, limit] : lines, FLOOR, 1e6);
-    const what = low ? "; dotted: too little is seen" : ", smallest eigenvalue";
-    const title = `Gramian (14) over ${readable(window)} s${what}`;
-    return { title, lines: [...lines, limit], scale };
+  gramian({ shown, ghost, theme, kept }, span, _bound, unseen) {
+    const { time, smallest, largest } = shown.gramian;
+    const floored = (values) => derived(values, "floored", () => values.map((value) => Math.max(value, FLOOR)));
+    const limit = derived(largest, "limit", () => largest.map((value) => unseen * value));
+    const lines = [
+      ...(ghost?.gramian ? [keptLine(kept, ghost.gramian.time, floored(ghost.gramian.smallest), theme)] : []),
+      { id: "estimate", text: "smallest", time, values: floored(smallest), colour: theme.ink },
+      { id: "limit", text: "too little is seen", time, values: limit, colour: theme.warning },
+    ];
+    return { lines, unit: "", scale: decades(lines, span, FLOOR, 1e6) };
   },
 };
 
-function barsOf({ absences }, theme) {
-  return absences.flatMap((spans, k) => spans.map(({ begin, end }) => ({ begin, end, colour: theme.lines[k] })));
+/** The chart of a name. */
+export function chartOf(name, scene, span, lab) {
+  const { shown } = scene;
+  if (name === "gramian" && !shown.gramian) return null;
+  const away = shown.absences.map((spans) => spans.map(({ begin, end }) => [begin, end]));
+  const bars = name !== "gramian" && away.some((spans) => spans.length) ? { text: "seen", rows: away } : null;
+  return { title: CHARTS[name], bars, ...BUILD[name](scene, span, lab.guaranteed(), lab.model.unseen) };
 }

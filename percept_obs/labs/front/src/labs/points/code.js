@@ -1,6 +1,6 @@
 // The few lines of Python that make the same run.
 
-import { list, NOISES, script } from "../../state/code.js";
+import { list, NOISES, script } from "../../ui/code.js";
 import { isTyped } from "../../engine/typed.js";
 import { OWN } from "./kernels.js";
 import { readP, textOfP } from "./weight.js";

@@ -40,24 +40,21 @@ export class PointsEngine {
       gramian: null,
       whole: false,
     };
-    if (whole) return this.completed(result, functions);
-    return settings.pictures.includes("gramian")
-      ? { ...result, gramian: this.gramian(result, functions, false) }
-      : result;
+    return whole ? this.completed(result, functions) : result;
   }
 
   /** A result with all that is read off it. */
   completed(result, functions) {
-    return { ...result, gramian: this.gramian(result, functions, true), whole: true };
+    return { ...result, gramian: this.gramian(result, functions), whole: true };
   }
 
-  /** Gramian of each window, or as much of it as a chart shows while a hand moves. */
-  gramian(result, functions, whole, longest = result.settings.window) {
+  /** Gramian of each window. */
+  gramian(result, functions, longest = result.settings.window) {
     const { settings, time, seenImages: images } = result;
     const window = Math.min(longest, time.at(-1));
     const { model, memory } = this;
     const known = { ...this.scene(settings, functions), ...this.flows(result, functions) };
-    return windowsOf({ ...known, model, time, images, window, memory, whole });
+    return windowsOf({ ...known, model, time, images, window, memory });
   }
 
   /** Flow of each kind of vector from time 0 to each sample, and the inverses of its Phi. */

@@ -13,10 +13,10 @@ const MOST_NUMBERS = 1500;
  *
  * As Phi is made of blocks 3 x 3, the integral is gathered once from the first sample on, in the blocks of vectors that
  * a point has together, and a window's is a difference, seen through the inverses of Phi's blocks. Of many windows some
- * are looked at, and if the whole is wanted all about the weakest.
+ * are looked at, and all about the weakest.
  */
 export function windowsOf(given) {
-  const { layout, model, n, time, kindOf, back, window, memory, whole } = given;
+  const { layout, model, n, time, kindOf, back, window, memory } = given;
   const blocks = derived(layout, "blocks", () => blocksOf(layout));
   const gathered = gather(given, blocks);
   const ends = endsOf(time, window);
@@ -31,7 +31,7 @@ export function windowsOf(given) {
   const least = (of) => sorted().reduce((a, b) => (of(found.get(b)) < of(found.get(a)) ? b : a));
   // Windows that miss directions come first, and of them those that miss most.
   const weakness = ({ smallest, largest, missed }) => (missed ? -missed : smallest / Math.max(largest, 1e-300));
-  for (const of of whole ? [weakness, ({ smallest }) => smallest] : []) {
+  for (const of of [weakness, ({ smallest }) => smallest]) {
     const middle = least(of);
     for (let k = Math.max(0, middle - every + 1); k < Math.min(ends.length, middle + every); k++) look(k);
   }

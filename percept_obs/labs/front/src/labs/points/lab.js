@@ -3,17 +3,14 @@
 import { readable } from "../../draw/scales.js";
 import { FormulaSheet, lettered } from "../../ui/formulas.js";
 import { Lab } from "../../ui/lab.js";
-import { Scene } from "../../old/scene.js";
 import { pythonOf } from "./code.js";
 import { PointsEngine } from "./engine.js";
 import { PointsKernels } from "./kernels.js";
 import { SYMBOLS } from "./symbols.js";
-import { decayInWords, readingAt, reasons, summaryOf, verdict } from "./text.js";
-import { PointsFirst } from "./screen.js";
-import { ImagePlane } from "./old_image_plane.js";
+import { decayInWords, reasons, summaryOf, verdict } from "./text.js";
+import { PointsScreen } from "./screen.js";
 import { NAMES, Panel, WORDS } from "./panel.js";
-import { chartOf, LABELS } from "./charts.js";
-import { sceneOf } from "./old_scene.js";
+import { chartOf, CHARTS } from "./charts.js";
 
 /** The equations of the observer and of the motion, with the numbers that sliders set. */
 class Formulas extends FormulaSheet {
@@ -38,15 +35,12 @@ export class PointsLab extends Lab {
   static computing = { Kernels: PointsKernels, Engine: PointsEngine };
 
   constructor(widget, place, model) {
-    const shown = { names: NAMES, symbols: SYMBOLS, labels: LABELS, chartOf, reasons, readingAt, summaryOf, pythonOf };
-    super(widget, model, { words: WORDS, ...shown });
-    const scene = sceneOf(this);
-    const plane = new ImagePlane(this, this.model.mostPoints, scene.arrowsOf);
-    this.planes = [plane, new Scene(this, { image: plane, ...scene })];
+    const parts = { names: NAMES, symbols: SYMBOLS, charts: CHARTS, chartOf, reasons, summaryOf, pythonOf };
+    super(widget, model, { words: WORDS, ...parts });
     this.formulas = new Formulas(this.model);
     this.panel = new Panel(this);
-    this.first = new PointsFirst(this);
-    this.open(place);
+    this.screen = new PointsScreen(this);
+    this.open(place, this.panel.groups);
   }
 
   // What the hand does.
@@ -60,12 +54,6 @@ export class PointsLab extends Lab {
     const { most = Infinity } = this.schema.points;
     if (!place.every((value) => Math.abs(value) <= most)) return;
     this.change({ points: this.settings.points.with(k, place) });
-  }
-
-  movePoint(k, [y1, y2]) {
-    const functions = this.kernels.of(this.settings);
-    if (k >= this.settings.points.length || !functions) return;
-    this.placePoint(k, Array.from(functions.locate([y1, y2, this.depthOf(k)], new Float64Array(3))));
   }
 
   moveDepth(k, depth) {
@@ -107,7 +95,7 @@ export class PointsLab extends Lab {
     if (hidden.some((times) => times && !(times[0] < times[1]))) {
       return "A point is hidden until after the time from which it is hidden.";
     }
-    return state === "own" && motion.trim() ? "Your own form has a motion of its own, and none can be typed." : "";
+    return state === "own" && motion.trim() ? "Your own form has a motion of its own, and none can be given." : "";
   }
 
   removePoint(k) {
@@ -140,19 +128,10 @@ export class PointsLab extends Lab {
     return this.answered()?.bound ?? null;
   }
 
-  besides() {
-    return { bound: this.guaranteed(), unseen: this.model.unseen };
-  }
-
   verdicts() {
     return [
-      { which: "truth", title: "Error", text: verdict(this.shown, this.model) },
-      { which: "fit", title: "Decay", text: decayInWords(this.shown, this.guaranteed()) },
+      { title: "Error", text: verdict(this.shown, this.model) },
+      { title: "Decay", text: decayInWords(this.shown, this.guaranteed()) },
     ];
-  }
-
-  legend() {
-    const points = Array.from({ length: this.shown.points }, (_, k) => [k, `point ${k + 1}`]);
-    return [...points, ...(this.guaranteed() === null ? [] : [["bound", "guaranteed"]])];
   }
 }

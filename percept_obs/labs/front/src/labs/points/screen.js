@@ -1,6 +1,6 @@
-// The first screen of the lab of many points: a body's estimate is pulled, mark by mark, on to the rays of the marks.
+// The screen of the lab of many points: a body's estimate is pulled, mark by mark, on to the rays of the marks.
 
-import { FirstScreen } from "../../ui/screen.js";
+import { Screen } from "../../ui/screen.js";
 import { valueBetween, within } from "../../engine/between.js";
 import { Body } from "./body.js";
 import { PointsEngine } from "./engine.js";
@@ -19,7 +19,7 @@ const [SWING, SWINGS] = [0.45, 2600];
 /** What no picture shows may move no point, as an origin of its own does. */
 const LEAST_REACH = 1e-6;
 
-export class PointsFirst extends FirstScreen {
+export class PointsScreen extends Screen {
   /** Amounts of the directions that no picture shows, as a hand has dragged the copy. */
   amounts = /** @type {number[] | null} */ (null);
   looked = 0;
@@ -30,17 +30,17 @@ export class PointsFirst extends FirstScreen {
     this.engine = new PointsEngine(lab.model);
     this.marks = Array.from({ length: IN_HAND }, (_, k) =>
       this.handle(this.image, {
-        ...{ name: `first mark ${k + 1}`, label: `Mark ${k + 1}; press it to hide it` },
+        ...{ name: `mark ${k + 1}`, label: `Mark ${k + 1}; press it to hide it` },
         onMove: (place) => this.aim(k, place),
         onPress: () => this.hide(k),
       }),
     );
     this.begin = this.handle(this.world, {
-      ...{ name: "first estimate", label: "The estimate's start", nudge: 0.1 },
+      ...{ name: "estimate", label: "The estimate's start", nudge: 0.1 },
       onMove: (place) => this.startAt(place),
     });
     this.twin = this.handle(this.world, {
-      ...{ name: "first copy", label: "A copy with the same pictures", nudge: 0.25 },
+      ...{ name: "copy", label: "A copy with the same pictures", nudge: 0.25 },
       onMove: (place) => this.slide(place),
     });
   }

@@ -2,8 +2,7 @@
 
 import { derived } from "../../engine/derived.js";
 import { readable, short } from "../../draw/scales.js";
-import { sampleAt } from "../../engine/tables.js";
-import { filled, settledInWords } from "../../state/words.js";
+import { filled, settledInWords } from "../../ui/words.js";
 import { inWords, mainly } from "./directions.js";
 import { eigen } from "./symmetric.js";
 
@@ -86,34 +85,6 @@ function absencesInWords({ time, absences, errors, settings }) {
       return `${name} was ${where} from ${readable(begin)} to ${readable(end)} s${error}.`;
     });
   });
-}
-
-export function imagePlaneInWords({ points, images, estimated, absences, time }) {
-  const place = (rows, k) => {
-    const [y1, y2] = [rows[2 * k], rows[2 * k + 1]];
-    const round = (y) => readable(Number(y.toFixed(3)));
-    return Number.isNaN(y1) ? "nowhere in the image" : `y1 ${round(y1)}, y2 ${round(y2)}`;
-  };
-  const end = points * (time.length - 1);
-  const parts = Array.from({ length: points }, (_, k) => {
-    const gaps = absences[k].length ? `, not seen ${absences[k].length} times` : "";
-    return (
-      `point ${k + 1} goes from ${place(images, k)} to ${place(images, end + k)}${gaps}, ` +
-      `and its estimate ends at ${place(estimated.images, end + k)}`
-    );
-  });
-  return `${parts.join("; ")}.`;
-}
-
-export function readingAt(shown, cursor) {
-  const k = sampleAt(shown.time, cursor);
-  const points = Array.from({ length: shown.points }, (_, p) => {
-    const [depth, estimate] = [shown.depths, shown.estimated.depths].map((rows) =>
-      readable(rows[k * shown.points + p]),
-    );
-    return `point ${p + 1}: depth ${depth} m, estimated ${estimate} m`;
-  });
-  return [`At ${readable(shown.time[k])} s`, `|error| ${readable(shown.size[k])}`, ...points].join(" · ");
 }
 
 export function summaryOf(shown, serial, model) {

@@ -1,9 +1,9 @@
 // What the first screen of many points tells: its sentence, its chart, and the sliders below.
 
-import { range } from "../../ui/handy.js";
+import { range } from "../../ui/controls.js";
 import { derived } from "../../engine/derived.js";
 import { between, within } from "../../engine/between.js";
-import { KEPT } from "../../draw/looks.js";
+import { keptLine } from "../../draw/lines.js";
 import { meanError } from "./questions.js";
 
 /** What is seen, in one sentence. */
@@ -43,25 +43,23 @@ export function chartOf(scene) {
   const told = settling > 0 && (secret ? time[0] + settling <= now : Number.isFinite(settling));
   const found = { time: time[0] + settling, text: `found ${(time[0] + settling).toFixed(1)} s`, colour };
   const bars = absences.map((spans) => spans.map(({ begin, end }) => [begin, end]));
-  const before = ghost && { id: "kept", text: kept, time: ghost.time, values: valuesOf(ghost), colour: theme.kept };
   return {
-    end: Math.max(shown.settings.duration, time.at(-1)),
-    high: 1.3 * within(Math.max(...off.filter(Number.isFinite), 0), 0.5, 20),
+    scale: { low: 0, high: 1.3 * within(Math.max(...off.filter(Number.isFinite), 0), 0.5, 20) },
     unit: "m",
     lines: [
-      ...(before ? [{ ...before, dash: KEPT }] : []),
+      ...(ghost ? [keptLine(kept, ghost.time, valuesOf(ghost), theme)] : []),
       { id: "estimate", text, time, values: off, colour, width: 3, secret },
     ],
     bars: hidden.length ? { text: "seen", rows: bars } : null,
-    found: told ? { ...found, value: off[between(time, found.time).sample] } : null,
+    found: told ? [{ ...found, value: off[between(time, found.time).sample] }] : [],
   };
 }
 
 /** The sliders below: the gain, which is 1 over P, and the camera's speed on its way round the body. */
 export function controlsOf(lab) {
   const change = (changes) => {
-    lab.first.touch();
-    lab.first.renew();
+    lab.screen.touch();
+    lab.screen.renew();
     lab.change(changes);
   };
   const rest = () => lab.rest();
@@ -69,12 +67,12 @@ export function controlsOf(lab) {
   const flies = () => lab.settings.motion !== "" && lab.settings.motion === lab.model.drive.motion;
   return [
     range({
-      ...{ name: "first gain", label: "Gain", low: 0.05, high: 10, log: true, rest },
+      ...{ name: "gain", label: "Gain", low: 0.05, high: 10, log: true, rest },
       get: () => (lab.settings.weight === "constant" ? Number((1 / lab.settings.size).toPrecision(2)) : null),
       set: (gain) => change({ size: Number((1 / gain).toPrecision(6)) }),
     }),
     range({
-      ...{ name: "first travel", label: "Camera travels", low: 0, high: 5, step: 0.1, rest, text: inWords },
+      ...{ name: "travel", label: "Camera travels", low: 0, high: 5, step: 0.1, rest, text: inWords },
       get: () => (flies() ? Math.abs(lab.settings.camera_velocity[0]) : null),
       set: (speed) => change({ camera_velocity: [speed, 0, 0] }),
     }),

@@ -1,41 +1,106 @@
-// What each time chart shows of a run: lines, scale, gaps, and the same in words.
+// The charts of the structure lab besides the first: lines, scale, gaps.
 
 import { columnOf, derived } from "../../engine/derived.js";
-import { percent } from "../../state/words.js";
-import { around, decades, distancesAround, line, linesOf, marksOf } from "../../draw/lines.js";
-import { runLines, sureOf, toleranceOf, withKept } from "../../draw/lines.js";
-import { BOUND, SOLID } from "../../draw/looks.js";
+import { around, coordinateLines, decades, distancesAround, linesOf, resetsOf } from "../../draw/lines.js";
+import { percent } from "../../ui/words.js";
 import { innovationOf, quantityOf, rangeOf } from "./quantities.js";
 
-export const LABELS = {
-  unknown1: "First unknown over time",
-  unknown2: "Second unknown over time",
-  unknown3: "Third unknown over time",
-  error: "Relative error of the unknowns over time",
-  image: "Image coordinates over time",
-  depth: "Scaled inverse depth over time",
-  innovation: "Innovation over time",
-  determinant: "Determinant over time",
-  range: "Range over time",
+/** Titles of the charts, by their names. */
+export const CHARTS = {
+  unknown1: "First unknown",
+  unknown2: "Second unknown",
+  unknown3: "Third unknown",
+  error: "Relative error",
+  image: "Image coordinates",
+  depth: "Scaled inverse depth",
+  innovation: "Innovation",
+  determinant: "Determinant",
+  range: "Range",
 };
 
-/** Names of the charts that are shown; of an impossible choice those of what is measured. */
-export function chartsOf({ settings, choice, problem, refusal }) {
-  if (problem) return [];
-  if (refusal) return MEASURED;
-  return Object.keys(LABELS).filter((name) => {
-    if (!name.startsWith("unknown")) return settings.pictures.includes(name);
-    return settings.pictures.includes("unknowns") && Number(name.slice(7)) <= choice.unknown.length;
-  });
+/** Least reach of a chart around its quantity, in m/s or 1/m. */
+const ROOM = 0.05;
+/** Observers that recover theta by a division, and so have gaps. */
+const GUARDED = ["ideal", "layer", "sign"];
+
+const EMPTY = { unit: "", lines: [], scale: { low: 0, high: 1 } };
+
+const truthOf = (result) => (result.truth?.length && !result.refusal ? result.truth : null);
+
+function unknown(scene, span, which) {
+  const { shown, ghost } = scene;
+  const name = shown.choice?.unknown[which];
+  if (!name) return { title: `${CHARTS[`unknown${which + 1}`]}: there is none`, ...EMPTY };
+  const there = ghost?.choice.unknown.includes(name) ? ghost : null;
+  const of = (result, rows) => quantityOf(result, rows, name);
+  const estimated = (result, run) => of(result, run.estimate);
+  const lines = linesOf({ ...scene, ghost: there }, estimated, (result) => of(result, result.truth));
+  return { title: name, unit: name === "d_s" ? "1/m" : "m/s", lines, scale: around(lines, span, ROOM) };
 }
 
+/** What is sampled of an output, and what observers make of it. */
+function outputs(scene, c) {
+  const { shown, theme } = scene;
+  const values = columnOf(shown.outputs, 3, c);
+  const sampled = { id: `sampled ${c}`, text: "sampled", time: shown.time, values, colour: theme.sample };
+  return [sampled, ...(shown.refusal ? [] : coordinateLines(scene, c))];
+}
+
+const BUILD = {
+  unknown1: (scene, span) => unknown(scene, span, 0),
+  unknown2: (scene, span) => unknown(scene, span, 1),
+  unknown3: (scene, span) => unknown(scene, span, 2),
+  error(scene, span) {
+    const { tolerance } = scene.shown;
+    const percents = ({ error }) => derived(error, "percent", () => error.map((value) => 100 * value));
+    const lines = linesOf(scene, (_, run) => percents(run));
+    const level = { value: 100 * tolerance, text: `tolerance ${percent(tolerance, 6)}` };
+    return { lines, unit: "%", level, scale: decades(lines, span, 1e-6, 1e5, level.value) };
+  },
+  image(scene, span) {
+    const called = (line, c) => ({ ...line, text: line.text && `y${c + 1} ${line.text}` });
+    const lines = [0, 1].flatMap((c) => outputs(scene, c).map((line) => called(line, c)));
+    return { lines, unit: "", scale: around(lines, span) };
+  },
+  depth(scene, span) {
+    const lines = outputs(scene, 2);
+    return { lines, unit: "", scale: around(lines, span) };
+  },
+  innovation(scene, span) {
+    const lines = linesOf(scene, innovationOf);
+    return { title: "Innovation: largest |ȳ − ŷ|", lines, unit: "", scale: decades(lines, span, 1e-12, 10) };
+  },
+  determinant(scene, span) {
+    const { shown, theme } = scene;
+    const { determinants, sizes } = shown.guard ?? { determinants: new Float64Array(0), sizes: new Float64Array(0) };
+    const values = derived(determinants, "size", () => determinants.map(Math.abs));
+    const lines = [{ id: "estimate", text: "determinant", time: shown.time, values, colour: theme.ink }];
+    const guarded = shown.runs.find(({ name }) => GUARDED.includes(name));
+    if (guarded) {
+      const largest = shown.settings.gains[guarded.name].largest_amplification;
+      const least = derived(sizes, `over ${largest}`, () => sizes.map((value) => value / largest));
+      const look = { time: shown.time, values: least, colour: theme.warning };
+      lines.push({ id: "least", text: "least for an estimate", ...look });
+    }
+    const product = shown.choice?.square ? "Ωg" : "(Ωgᵀ Ωg)";
+    return { title: `|det ${product}|`, lines, unit: "", scale: decades(lines, span, 1e-16, 1e6) };
+  },
+  range(scene, span) {
+    const right = (result) => truthOf(result) && rangeOf(result, result.truth);
+    const lines = linesOf(scene, (result, run) => rangeOf(result, run.estimate), right);
+    return { lines, unit: "m", scale: distancesAround(lines, span) };
+  },
+};
+
+/** What is measured is shown of an impossible choice as well. */
 const MEASURED = ["image", "depth"];
 
-export function chartOf(name, shown, ghost, theme) {
-  const gaps = united(shown.runs.flatMap((run) => run.gaps));
-  const regions = gaps.map(([begin, end]) => ({ begin, end, text: "no estimate" }));
-  const which = name.startsWith("unknown") ? UNKNOWN : BUILD[name];
-  return { regions, marks: marksOf(shown, theme), ...which(shown, ghost, theme, Number(name.slice(7)) - 1) };
+/** The chart of a name. */
+export function chartOf(name, scene, span) {
+  const { shown } = scene;
+  if (shown.refusal && !MEASURED.includes(name)) return { title: `${CHARTS[name]}: nothing is estimated`, ...EMPTY };
+  const spans = united(shown.runs.flatMap((run) => run.gaps)).map(([begin, end]) => ({ begin, end, text: "" }));
+  return { title: CHARTS[name], spans, resets: resetsOf(scene), ...BUILD[name](scene, span) };
 }
 
 /** Spans of time without overlaps, so that none is shaded twice. */
@@ -46,60 +111,4 @@ function united(spans) {
     else found.push([begin, end]);
   }
   return found;
-}
-
-/** Least reach of a chart around its quantity, in m/s or 1/m. */
-const ROOM = 0.05;
-
-function UNKNOWN(shown, ghost, theme, which) {
-  const name = shown.choice.unknown[which];
-  const there = ghost?.choice.unknown.includes(name) ? ghost : null;
-  const lines = linesOf(shown, there, theme, name, (result, rows) => quantityOf(result, rows, name));
-  return { title: `${name} in ${name === "d_s" ? "1/m" : "m/s"}`, lines, scale: around(lines, shown, ROOM) };
-}
-
-const BUILD = {
-  error(shown, ghost, theme) {
-    const title = `Relative error of all unknowns; tolerance ${percent(shown.tolerance, 6)}`;
-    const lines = runLines(shown, ghost, theme, "error", (_, run) => run.error);
-    return { title, lines, scale: decades(lines, 1e-8, 1e3, shown.tolerance), ...toleranceOf(shown, theme) };
-  },
-  image(shown, ghost, theme) {
-    const lines = [0, 1].flatMap((c) => outputs(shown, ghost, theme, c));
-    return { title: "Image coordinates y1, y2", lines, scale: around(lines, shown) };
-  },
-  depth(shown, ghost, theme) {
-    const lines = outputs(shown, ghost, theme, 2);
-    return { title: "Scaled inverse depth ȳ3", lines, scale: around(lines, shown) };
-  },
-  innovation(shown, ghost, theme) {
-    const lines = runLines(shown, ghost, theme, "innovation", innovationOf);
-    return { title: "Innovation: largest |ȳ − ŷ|", lines, scale: decades(lines, 1e-12, 10) };
-  },
-  determinant(shown, ghost, theme) {
-    const size = (values) => derived(values, "size", () => values.map(Math.abs));
-    const lines = withKept("determinant", shown, ghost, theme, ({ time, guard }) => [time, size(guard.determinants)]);
-    const guarded = shown.runs.find((run) => run.name in GUARDED);
-    if (guarded) {
-      const largest = shown.settings.gains[guarded.name].largest_amplification;
-      const least = shown.guard.sizes.map((value) => value / largest);
-      lines.push(line("least determinant for an estimate", shown.time, least, theme.warning, BOUND));
-    }
-    const product = shown.choice.square ? "Ωg" : "(Ωgᵀ Ωg)";
-    const title = `|det ${product}|${guarded ? "; dotted: least for an estimate" : ""}`;
-    return { title, lines, scale: decades(lines, 1e-16, 1e6) };
-  },
-  range(shown, ghost, theme) {
-    const lines = linesOf(shown, ghost, theme, "range", rangeOf);
-    return { title: "Range Z in m", lines, scale: distancesAround(lines, sureOf(shown)) };
-  },
-};
-
-/** Observers that recover theta by a division, and so have gaps. */
-const GUARDED = { ideal: true, layer: true, sign: true };
-
-function outputs(shown, ghost, theme, c) {
-  const name = shown.names[c];
-  const sampled = line(`${name} sampled`, shown.time, columnOf(shown.outputs, 3, c), theme.sample, SOLID);
-  return [sampled, ...linesOf(shown, ghost, theme, name, ({ width }, rows) => columnOf(rows, width, c))];
 }

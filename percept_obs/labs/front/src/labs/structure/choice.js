@@ -1,8 +1,8 @@
 // What is known and what is not: boxes to tick, the cases of the paper in its table, and the determinant that decides.
 
 import { readable } from "../../draw/scales.js";
-import { checkbox } from "../../ui/controls.js";
-import { button, element, setText } from "../../ui/dom.js";
+import { tick } from "../../ui/controls.js";
+import { button, element, setText } from "../../draw/dom.js";
 import { FormulaSheet, lettered } from "../../ui/formulas.js";
 import { isZero, keyOf } from "./kernels.js";
 
@@ -23,9 +23,9 @@ export class ChoiceOfUnknowns {
     this.cases = [];
     this.value = element("span", { class: "value" });
     this.determinant = new FormulaSheet();
-    /** @type {ReturnType<typeof checkbox>[]} */
+    /** @type {ReturnType<typeof tick>[]} */
     this.boxes = [];
-    this.earlier = checkbox({
+    this.earlier = tick({
       name: "earlier",
       label: "d_s was estimated before, so θ holds d_s v",
       get: () => lab.settings.earlier,
@@ -36,8 +36,13 @@ export class ChoiceOfUnknowns {
       "section",
       { class: "unknowns", role: "group", "aria-label": "What is known" },
       element("h4", {}, "Tick what you know"),
-      ...[...this.groups(), this.earlier.row, this.told],
+      ...[...this.groups(), this.earlier.row, this.told, this.table()],
     );
+  }
+
+  /** The boxes, which follow the settings. */
+  get controls() {
+    return [...this.boxes, this.earlier];
   }
 
   groups() {
@@ -50,7 +55,7 @@ export class ChoiceOfUnknowns {
 
   box(name) {
     const { lab, model } = this;
-    const box = checkbox({
+    const box = tick({
       name: `known ${name}`,
       label: "",
       get: () => !lab.settings.unknown.includes(name),
@@ -98,8 +103,6 @@ export class ChoiceOfUnknowns {
     const key = JSON.stringify([keyOf(settings), refusal, corollary]);
     if (key !== this.shownFor) {
       this.shownFor = key;
-      for (const box of this.boxes) box.show();
-      this.earlier.show();
       this.earlier.row.hidden = settings.unknown.includes("d_s");
       for (const [number, press] of this.cases) press.setAttribute("aria-pressed", String(number === corollary));
       this.tell(settings, refusal, corollary);

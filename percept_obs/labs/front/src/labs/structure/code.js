@@ -1,6 +1,6 @@
 // The few lines of Python that make the same run.
 
-import { userDefined, durationOf, list, NOISES, script, trackings } from "../../state/code.js";
+import { userDefined, durationOf, list, NOISES, script, trackings } from "../../ui/code.js";
 import { isTyped } from "../../engine/typed.js";
 import { isSampled, varies } from "./camera.js";
 import { isZero } from "./kernels.js";

@@ -47,7 +47,7 @@ export class StructureEngine extends Runner {
     asked.push(...hidden.map(() => 0));
     const { observers } = this.model.forms[hidden.length];
     result.runs = this.followAll(settings, result, inputs, (name) => observers[name], functions, asked);
-    if (whole || settings.pictures.includes("determinant")) return this.completed(result, functions);
+    if (whole) return this.completed(result, functions);
     return { ...result, guard: null, limits: [], whole: false };
   }
 

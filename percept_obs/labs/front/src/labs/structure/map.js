@@ -1,8 +1,7 @@
 // The map of the first screen: worlds from above, one inside of the other, for all cameras begin at one place.
 
-import { roundStep } from "../../draw/chart.js";
 import { within } from "../../engine/between.js";
-import { readable } from "../../draw/scales.js";
+import { readable, roundStep } from "../../draw/scales.js";
 import { TRUE } from "./worlds.js";
 import { cameraAbove, carAbove, metres, speed, WIDE } from "./marks.js";
 
@@ -56,6 +55,9 @@ export function drawMap(view, first, scene, note) {
   const draw = (world, k, colour) => drawFigure(view, first, { world, k, colour, on, scale }, scene);
   draw(more, LARGE, theme.muted);
   draw(less, SMALL, theme.muted);
+  for (const { run, ratio } of seen.known.size ? [] : seen.others) {
+    if (Number.isFinite(ratio)) draw({ size: ratio, share: null }, ESTIMATE, theme.lines[run.order]);
+  }
   if (Number.isFinite(seen.ratio)) {
     draw({ size: seen.known.size ? 1 : seen.ratio, share: null }, ESTIMATE, theme.lines[seen.run.order]);
   }

@@ -1,10 +1,10 @@
-// The first screen of the structure lab: a family of worlds makes one film, and what one knows picks one of them.
+// The screen of the structure lab: a family of worlds makes one film, and what one knows picks one of them.
 
-import { tick } from "../../ui/handy.js";
-import { FirstScreen } from "../../ui/screen.js";
+import { tick } from "../../ui/controls.js";
+import { Screen } from "../../ui/screen.js";
 import { within } from "../../engine/between.js";
 import { isTyped } from "../../engine/typed.js";
-import { element } from "../../ui/dom.js";
+import { element } from "../../draw/dom.js";
 import { KEPT } from "../../draw/looks.js";
 import { isSampled } from "./camera.js";
 import { QUESTIONS } from "./questions.js";
@@ -27,7 +27,7 @@ const [NEARLY, LEFT_OVER] = [1, 2];
 const GAPS = ["cannot be told", "speed near zero", "no estimate yet"];
 const TOO_FAR = "too far to tell";
 
-export class StructureFirst extends FirstScreen {
+export class StructureScreen extends Screen {
   /** Size of the other world that a hand may take, and the camera's share of the motion in it. */
   size = TWICE;
   share = 0.5;
@@ -37,16 +37,21 @@ export class StructureFirst extends FirstScreen {
 
   constructor(lab) {
     super(lab, CAPTIONS, ticksOf(lab), QUESTIONS);
-    this.body.classList.add("of-worlds");
-    this.body.querySelector(".handy")?.prepend(element("span", {}, "Known:"));
     this.other = this.handle(this.world, {
-      ...{ name: "first world", label: "Another world that makes this film", nudge: 0.25 },
+      ...{ name: "world", label: "Another world that makes this film", nudge: 0.25 },
       onMove: (place) => this.scale(place),
     });
     this.camera = this.handle(this.world, {
-      ...{ name: "first camera", label: "The camera, where it has come to", nudge: 0.25 },
+      ...{ name: "camera", label: "The camera, where it has come to", nudge: 0.25 },
       onMove: (place) => this.drive(place),
     });
+  }
+
+  build(more) {
+    super.build(more);
+    this.body.classList.add("of-worlds");
+    this.body.querySelector(".handy")?.prepend(element("span", {}, "Known:"));
+    return this;
   }
 
   renew() {
@@ -94,7 +99,7 @@ export class StructureFirst extends FirstScreen {
 
   look(scene) {
     const { lab } = this;
-    const { shown, now, at } = scene;
+    const { shown, chosen: run, now, at } = scene;
     if (this.worlds?.shown !== shown) {
       const functions = lab.kernels.of(shown.settings);
       const { camera } = lab.results.engines[0];
@@ -102,13 +107,12 @@ export class StructureFirst extends FirstScreen {
     }
     scene.worlds = this.worlds;
     const { known } = this.worlds;
-    const [run = null] = shown.runs;
     const ratios = run && ratiosOf(this.worlds, shown, run);
     const gaps = joined(run?.gaps ?? []);
     const why = gaps.find(([begin, end]) => begin <= now && now <= end)?.[2] ?? 0;
     const settled = run ? foundAt(run, shown) : Infinity;
     this.seen = {
-      ...{ run, ratios, known, gaps, why, settled },
+      ...{ run, ratios, known, gaps, why, settled, others: run ? this.othersAt(scene) : [] },
       ratio: run && !why ? ratios[at.sample] : NaN,
       estimate: run && !why && known.size ? estimatedSpeeds(this.worlds, shown, run, at) : null,
       told: Boolean(run),
@@ -117,6 +121,12 @@ export class StructureFirst extends FirstScreen {
       reading: this.worlds.reading(now),
     };
     return this.seen;
+  }
+
+  /** What the other observers estimate now. */
+  othersAt({ shown, chosen, at }) {
+    const others = shown.runs.filter((run) => run !== chosen);
+    return others.map((run) => ({ run, ratio: ratiosOf(this.worlds, shown, run)[at.sample] }));
   }
 
   /** What another world would need, and whether what is known contradicts that; null where nothing does. */
@@ -242,17 +252,26 @@ export class StructureFirst extends FirstScreen {
     const found = Number.isFinite(settled) && (!secret || settled <= now);
     const estimated = () => ({ time: time.subarray(from), values: ratios.subarray(from), colour, width: 3, secret });
     return {
-      ...{ end, unit: "", mark: (value) => (value ? `×${value}` : "0"), spans: this.spansOf(scene) },
-      high: Math.max(2.4, free ? 1.15 * Math.max(...sizes) : 0),
+      ...{ unit: "", mark: (value) => (value ? `×${value}` : "0"), spans: this.spansOf(scene) },
+      scale: { low: 0, high: Math.max(2.4, free ? 1.15 * Math.max(...sizes) : 0) },
       title: free ? "" : `${quantity} ÷ true`,
       lines: [
         ...(ghost ? [this.keptLine(scene)] : []),
         ...(free ? sizes.map((value, k) => level(`other ${k}`, value, theme.muted, { width: 2.5, secret })) : []),
-        ...(begun ? [{ id: "estimate", text: "estimate", ...estimated() }] : []),
+        ...this.otherLines(scene),
+        ...(begun ? [{ id: "estimate", text: shown.runs.length > 1 ? run.title : "estimate", ...estimated() }] : []),
         level("true", 1, theme.ink, { text: "true", width: 1.6 }),
       ],
-      found: found ? { time: settled, value: 1, text: `found ${settled.toFixed(1)} s`, colour } : null,
+      found: found ? [{ time: settled, value: 1, text: `found ${settled.toFixed(1)} s`, colour }] : [],
     };
+  }
+
+  /** The other observers' lines. */
+  otherLines({ shown, theme, secret }) {
+    return this.seen.others.map(({ run }) => {
+      const line = { id: run.name, run: run.name, text: run.title, colour: theme.lines[run.order], width: 1.8, secret };
+      return { ...line, time: shown.time, values: ratiosOf(this.worlds, shown, run) };
+    });
   }
 
   keptLine({ ghost, kept, theme, secret }) {
@@ -306,9 +325,9 @@ function ticksOf(lab) {
   const now = () => knowledgeOf(lab.settings.unknown);
   const box = (name, before, label) =>
     tick({
-      ...{ name: `first ${name}`, before, label },
+      ...{ name: `${name}`, before, label },
       get: () => now()[name],
-      set: (on) => lab.first.replay({ unknown: unknownOf({ ...now(), [name]: on }, lab.model.quantities) }),
+      set: (on) => lab.screen.replay({ unknown: unknownOf({ ...now(), [name]: on }, lab.model.quantities) }),
     });
   const speeds = [box("ahead", "camera's speed", "ahead"), box("sideways", "", "sideways")];
   return [box("rests", "car", "rests"), box("size", "its", "size"), ...speeds];

@@ -1,7 +1,7 @@
 // Why it happened, and the pictures in words.
 
 import { readable, short } from "../../draw/scales.js";
-import { filled, leavingInWords, readingAt as readingOf } from "../../state/words.js";
+import { filled, leavingInWords } from "../../ui/words.js";
 import { quantityOf } from "./quantities.js";
 
 const ONE_GAIN = ["identifier_based", "de_luca"];
@@ -49,10 +49,4 @@ function endOf(run, shown) {
 /** A quantity to a micrometre a second, so that what is nothing reads as nothing. */
 function plain(value) {
   return readable(Number(value.toFixed(6)), 4);
-}
-
-export function readingAt(shown, cursor) {
-  const { unknown } = shown.choice;
-  const quantities = (_, rows, k) => unknown.map((name) => [name, plain(quantityOf(shown, rows, name)[k])]);
-  return readingOf(shown, cursor, quantities);
 }

@@ -1,7 +1,7 @@
 // Where everything stands at the desk: choices, what is given, the steps, the lines of one, the picture.
 
-import { button, element, formula, setText } from "../../../ui/dom.js";
-import { historyButtons, keys, messagesOf } from "../../../ui/layout.js";
+import { button, element, formula, setText } from "../../../draw/dom.js";
+import { historyButtons, keys, messagesOf } from "../../../ui/messages.js";
 
 export function build(lab, place) {
   const { panel, sheet, picture, replay } = lab;

@@ -2,7 +2,7 @@
 
 import { same } from "../../../state/settings.js";
 import { field, select } from "../../../ui/controls.js";
-import { element } from "../../../ui/dom.js";
+import { element } from "../../../draw/dom.js";
 import { Fieldsets } from "../../../ui/fieldsets.js";
 
 export const WORDS = {

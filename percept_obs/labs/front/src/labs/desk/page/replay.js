@@ -1,7 +1,7 @@
 // A line is typed once more, letter by letter: the play button, its clock, and the chart that one drags.
 
 import { within } from "../../../engine/between.js";
-import { button, element, setAttribute, svg } from "../../../ui/dom.js";
+import { button, element, setAttribute, svg } from "../../../draw/dom.js";
 import { Misses } from "./misses.js";
 
 /** Milliseconds that a line takes to be typed, however long it is, and those at rest before. */

@@ -1,6 +1,6 @@
 // The lines of a step: what is typed, the same as mathematics, and what is found of it.
 
-import { button, element, formula, listen, setText } from "../../../ui/dom.js";
+import { button, element, formula, listen, setText } from "../../../draw/dom.js";
 
 const MARKS = { right: "✓", begun: "…", wrong: "✗", carried: "↳", unknown: "?" };
 const SAID = {

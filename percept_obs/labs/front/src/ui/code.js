@@ -1,6 +1,6 @@
 // Python code of a run: the parts that all labs share.
 
-import { switchOf } from "./settings.js";
+import { switchOf } from "../state/settings.js";
 
 export const NOISES = { uniform: "Uniform", gaussian: "Gaussian" };
 

@@ -2,9 +2,6 @@
 
 import { settled } from "../engine/errors.js";
 import { readable, short } from "../draw/scales.js";
-import { sampleAt } from "../engine/tables.js";
-
-const MANY = 3;
 
 export function filled(text, values) {
   return text.replace(/{(\w+)}/g, (_, name) => values[name]);
@@ -43,67 +40,9 @@ export function settledInWords({ judged, error, tolerance }, settling, length, {
   });
 }
 
-/** Short verdict on one observer, for comparisons. */
-export function verdictInShort({ divergedAt, settling, error }, { time, tolerance }, { settledPart, farOff }) {
-  if (divergedAt !== null) return `diverged after ${short(divergedAt - time[0])} s`;
-  if (!error) return "no truth to compare with";
-  if (settling < Infinity) {
-    const sure = settled(settling, time.at(-1) - time[0], settledPart);
-    return sure
-      ? `converged after ${short(settling)} s`
-      : `outside ${percent(tolerance, 6)} until ${short(settling)} s`;
-  }
-  const last = error.at(-1);
-  if (Number.isNaN(last)) return "ends without an estimate";
-  if (last === Infinity) return "ends behind the camera";
-  return `ends at ${last <= farOff ? percent(last) : `more than ${short(100 * farOff, 6)} %`}`;
-}
-
 /** A share in per cent. */
 export function percent(share, digits = 3) {
   return `${short(100 * share, digits)} %`;
-}
-
-/** Values at a time, of the truth and of each run. */
-export function readingAt(shown, cursor, valuesOf = coordinatesAt) {
-  const k = sampleAt(shown.time, cursor);
-  const row = (rows) => valuesOf(shown, rows, k).map(([name, value]) => `${name} = ${value}`).join(", ");
-  const truth = shown.truth ? [`true ${row(shown.truth)}`] : [];
-  const runs = shown.runs.map(({ title, estimate }) => `${title} ${row(estimate)}`);
-  return [`At ${readable(shown.time[k])} s`, ...truth, ...runs].join(" · ");
-}
-
-/** Coordinates at a sample; of many observers only the hidden ones, since the others differ little. */
-function coordinatesAt({ runs, hidden, names, width }, rows, k) {
-  const told = runs.length > MANY ? hidden : [...names.keys()];
-  return told.map((c) => [names[c], readable(rows[k * width + c])]);
-}
-
-/** The text equivalent of the image plane of a point. */
-export function imagePlaneInWords({ problem, time, truth, width, names, runs, foe, circle }) {
-  if (problem) return problem;
-  const point = (rows, k = 0) => [0, 1].map((c) => `${names[c]} ${readable(rows[k * width + c])}`).join(", ");
-  const end = time.length - 1;
-  const parts = runs.map(({ title, estimate }) => `the ${title} estimate ends at ${point(estimate, end)}`);
-  if (truth) parts.unshift(`the point goes from ${point(truth)} to ${point(truth, end)}`);
-  if (foe) parts.push(`focus of expansion at y1 ${readable(foe[0])}, y2 ${readable(foe[1])}`);
-  if (circle) parts.push(`circle of radius ${readable(Math.abs(circle[2]))} in which an instant tells little`);
-  return `${parts.join("; ")}.`;
-}
-
-/** The text equivalent of the scene of a point: how far it is, and how far the estimates put it. */
-export function sceneInWords(shown, distancesOf) {
-  if (shown.problem) return shown.problem;
-  const { truth, runs, time } = shown;
-  const last = time.length - 1;
-  const far = (value) => (Number.isNaN(value) ? "infinitely far away or behind the camera" : `at ${readable(value)} m`);
-  const parts = runs.map(({ title, estimate }) => {
-    const distances = distancesOf(estimate);
-    return `the ${title} estimate begins ${far(distances[0])} and ends ${far(distances[last])}`;
-  });
-  if (truth?.length) parts.unshift(`the point goes from ${readable(distancesOf(truth)[0])} m to ` +
-    `${readable(distancesOf(truth)[last])} m of the camera`);
-  return `${parts.join("; ")}.`;
 }
 
 /** When the point was lost, if it was. */
