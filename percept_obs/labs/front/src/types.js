@@ -45,11 +45,6 @@
  * @property {{time: Float64Array, smallest: Float64Array}} begun  the same since the first sample, until a window is
  *   full
  *
- * @typedef {object} Shares
- * @property {Float64Array} quiet  the relative error of the same run without noise, at each sample
- * @property {Float64Array} time   in s
- * @property {Float64Array} added  the root mean square, about each of these times, of what noise adds
- *
  * @typedef {object} OfObserverLab
  * @property {number[] | null} foe  the focus of expansion in the image; null where it is at infinity
  * @property {number[] | null} foeTowards  the direction in which it is there, of length 1
@@ -57,7 +52,6 @@
  * @property {number[][]} inside  when the image of the point is in it: begin and end
  * @property {Excitation | null} excitation
  * @property {Float64Array | null} bound  the least relative error that the noise leaves, at each sample
- * @property {Shares | null} shares  what of the error of the only observer noise adds
  * @typedef {SharedResult & OfObserverLab} ObserverResult
  *
  * @typedef {object} OfStructureLab
@@ -104,12 +98,6 @@
  */
 
 /**
- * @typedef {object} Alike         points that the only measured coordinate cannot tell apart at an instant
- * @property {{place: number[], at: number[], velocity: number[], distance: number, own: boolean}[]} copies
- *     each in the image, in metres before the camera, its velocity in the image, and its distance in m
- * @property {number} measured     0 for y1, 1 for y2
- * @property {string} name         of what is measured
- *
  * @typedef {object} SettingSchema  what a setting may be, as a lab's schema has it by the setting's name
  * @property {"number" | "choice" | "names" | "matrix" | "list" | "group" | "several"} kind
  * @property {string} [label]      what the panel calls it
@@ -130,37 +118,6 @@
  * @property {number} [rows]       of a matrix
  * @property {number} [columns]
  * @property {SettingSchema} [depth]  of points
- */
-
-/**
- * @typedef {object} ChartLine
- * @property {string} name
- * @property {ArrayLike<number>} time
- * @property {any} values          an array of numbers
- * @property {string} colour
- * @property {number[]} dash
- * @property {string} [text]       that stands beside it
- *
- * @typedef {object} ChartParts    one time chart, in the values and colours that it is drawn with
- * @property {string} title
- * @property {string} [key]        by which its scale is kept, where its title changes with the run
- * @property {ChartLine[]} lines
- * @property {(bounds: (line: ChartLine, options?: any) => number[] | null) => Scale} scale  for what lines do in sight
- * @property {{time: ArrayLike<number>, low: any, high: any, colour: string}} [band]  between two arrays of numbers
- * @property {{begin: number, end: number, text: string}[]} [regions]  shaded
- * @property {{times: number[], colour: string, text: string}[]} [marks]  resets
- * @property {{time: number, colour: string, text: string}[]} [events]
- * @property {{begin: number, end: number, colour: string}[]} [bars]
- * @property {number} [level]      of a dotted line
- *
- * @typedef {{low: number, high: number, ticks: number[], log?: boolean}} Scale
- *
- * @typedef {object} Plane         a picture besides the time charts
- * @property {HTMLElement} figure
- * @property {{width: number, height: number} | null} size
- * @property {(shown: any, ghost: any, cursor: number | null, theme: any) => void} draw
- * @property {(shown: any) => void} describe
- * @property {() => void} [close]  ends what it does beside the page
  */
 
 export {};

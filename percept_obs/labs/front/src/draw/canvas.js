@@ -12,8 +12,7 @@ export class Picture {
     this.canvas = element("canvas", { role: "img", "aria-label": label });
     this.context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
     this.figure = element("figure", { class: className }, this.canvas);
-    this.below = element("canvas");
-    this.paintedFor = this.font = "";
+    this.font = "";
     /** @type {{width: number, height: number} | null} */
     this.size = null;
   }
@@ -51,26 +50,6 @@ export class Picture {
     // Letters of the last picture may have left it as they need it.
     context.lineJoin = "round";
     return { width, height };
-  }
-
-  /** Draw what seldom changes below all else: painted once for each key, since letters are slow. */
-  underlay(key, paint) {
-    const { canvas, context, below } = this;
-    const whole = JSON.stringify([key, canvas.width, canvas.height]);
-    if (this.paintedFor !== whole) {
-      this.paintedFor = whole;
-      below.width = canvas.width;
-      below.height = canvas.height;
-      const pen = /** @type {CanvasRenderingContext2D} */ (below.getContext("2d"));
-      pen.setTransform(context.getTransform());
-      pen.font = this.font;
-      pen.lineWidth = 1;
-      paint(pen);
-    }
-    context.save();
-    context.resetTransform();
-    context.drawImage(below, 0, 0);
-    context.restore();
   }
 
   tell(text) {

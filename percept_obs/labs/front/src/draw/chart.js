@@ -198,7 +198,7 @@ export class TimeChart extends View {
   head({ title = "", lines, unit }, time, peeked, right) {
     const read = title || peeked ? readingAt(lines, time, unit) : "";
     const text = [title, peeked ? `${readable(time)} s` : "", read].filter(Boolean).join(" · ");
-    const short = this.pen.measureText(text).width > right - PAD.left - 16 ? title || read : text;
+    const short = this.context.measureText(text).width > right - PAD.left - 16 ? title || read : text;
     if (short) this.write(short, right - 8, 8, this.theme.muted, "right");
   }
 

@@ -10,15 +10,14 @@ const LEAP = 10;
 const PRESSED = 4;
 
 /** Steps of the arrow keys, right and up. */
-export const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /** Stands at a place in the picture's coordinates, if there is one, and tells where it is moved to. */
 export class Handle {
   /** @param {Record<string, any>} parts  `onPress` is for a press that does not move it, and for Enter or space */
-  constructor({ name, label, className, text = "", nudge = NUDGE, onMove, onRest, onKey, onPress = null }) {
+  constructor({ name, label, className, nudge = NUDGE, onMove, onRest, onPress = null }) {
     this.nudge = nudge;
     this.onMove = onMove;
-    this.onKey = onKey;
     this.onPress = onPress;
     /** @type {number[] | null} */
     this.at = null;
@@ -30,10 +29,6 @@ export class Handle {
       ...{ class: `handle ${className}`, "data-control": name, tabindex: 0, role: "slider" },
       ...{ "aria-label": label, "aria-valuenow": 0 },
     });
-    this.node.append(text);
-    this.text = text;
-    /** @type {number[] | null} pixels of the picture at which it stands */
-    this.there = null;
     const follow = (event) => {
       if (!this.grip || event.pointerId !== this.grip.id) return;
       const { x, y, from: [y1, y2] } = this.grip;
@@ -85,8 +80,8 @@ export class Handle {
       event.preventDefault();
       return;
     }
-    if (step) this.move(this.at.map((value, c) => value + step[c] * size));
-    else if (!this.onKey?.(event)) return;
+    if (!step) return;
+    this.move(this.at.map((value, c) => value + step[c] * size));
     this.keyed = true;
     event.preventDefault();
   }
@@ -105,21 +100,19 @@ export class Handle {
     const { node } = this;
     if (!late) this.at = at;
     node.hidden = !at;
-    this.there = null;
     if (!at) return;
     const { box, scale, x, y } = frame;
     this.scale = scale;
     const wanted = [x(at[0]), y(at[1])];
-    const sides = [box.width ?? box.side, box.height ?? box.side];
+    const sides = [box.width, box.height];
     const [left, top] = [box.left, box.top].map((low, c) => within(wanted[c], low, low + sides[c]));
     node.classList.toggle("outside", Math.abs(left - wanted[0]) + Math.abs(top - wanted[1]) > 1);
-    this.there = [left, top];
     node.style.transform = `translate(${left}px, ${top}px)`;
   }
 
-  describe(more = "") {
+  describe() {
     if (!this.at) return;
     this.node.setAttribute("aria-valuenow", this.at[0].toFixed(3));
-    this.node.setAttribute("aria-valuetext", `y1 ${readable(this.at[0])}, y2 ${readable(this.at[1])}${more}`);
+    this.node.setAttribute("aria-valuetext", `y1 ${readable(this.at[0])}, y2 ${readable(this.at[1])}`);
   }
 }

@@ -26,7 +26,6 @@ const REACH = 5000;
  * @property {number} [gap]    pixels from the thing's middle to its rim
  * @property {number[]} [towards]  direction of the side that is tried first
  * @property {number[][]} [along]  pixels of other places of the thing at which it may be named
- * @property {number[]} [within]   a box in one of whose corners it stands, in place of beside a thing
  */
 
 export class LabelledPicture extends Picture {
@@ -38,13 +37,8 @@ export class LabelledPicture extends Picture {
     this.texts = [];
     /** @type {number[][]} boxes in which no label may stand */
     this.taken = [];
-    /** @type {number[][]} boxes in which one stands only if there is no other place */
-    this.busy = [];
     /** @type {Label[]} */
     this.labels = [];
-    /** @type {{texts: {text: string, box: number[]}[], taken: number[][]}} what lies below all else */
-    this.under = { texts: [], taken: [] };
-    this.pen = this.context;
     this.width = this.height = 0;
     this.theme = /** @type {any} */ (null);
   }
@@ -52,26 +46,12 @@ export class LabelledPicture extends Picture {
   /** Begin a picture: an empty canvas. */
   begin(theme) {
     const { width, height } = this.fit(theme.font);
-    Object.assign(this, { width, height, theme, texts: [], taken: [], busy: [], labels: [] });
-  }
-
-  /** Draw what seldom changes below all else; what is written there keeps its place. */
-  underlay(key, paint) {
-    super.underlay(key, (below) => {
-      const [texts, taken] = [this.texts.length, this.taken.length];
-      this.pen = below;
-      paint(below);
-      this.end();
-      this.pen = this.context;
-      this.under = { texts: this.texts.splice(texts), taken: this.taken.splice(taken) };
-    });
-    this.texts.push(...this.under.texts);
-    this.taken.push(...this.under.taken);
+    Object.assign(this, { width, height, theme, texts: [], taken: [], labels: [] });
   }
 
   /** Draw a line through points; it is interrupted where one is not a number. */
   line(points, colour, { width = 1.5, dash = /** @type {number[]} */ ([]), alpha = 1 } = {}) {
-    const { pen } = this;
+    const { context: pen } = this;
     pen.beginPath();
     let [before, begun] = [/** @type {number[] | null} */ (null), false];
     for (const point of points) {
@@ -98,31 +78,24 @@ export class LabelledPicture extends Picture {
     this.taken.push([x - across, y - down, x + across, y + down]);
   }
 
-  /** Keep labels away from a straight line; or only where they find another place, if its boxes are the busy ones. */
-  avoidLine(from, to, boxes = this.taken) {
+  /** Keep labels away from a straight line. */
+  avoidLine(from, to) {
     const [[x, y], [u, v]] = [from, to];
     const count = Math.ceil(Math.min(Math.hypot(u - x, v - y), LONGEST) / EACH);
     for (let k = 1; k < count; k++) {
       const [cx, cy] = [x + ((u - x) * k) / count, y + ((v - y) * k) / count];
-      boxes.push([cx - 3, cy - 3, cx + 3, cy + 3]);
+      this.taken.push([cx - 3, cy - 3, cx + 3, cy + 3]);
     }
   }
 
   /** Write a text at its own place, such as a number at an axis; left out where it would be cut or cover another. */
   write(text, x, y, colour, align = "center") {
-    const wide = this.pen.measureText(text).width;
+    const wide = this.context.measureText(text).width;
     const left = x - { left: 0, center: wide / 2, right: wide }[align];
     const box = [left, y - HALF + 1, left + wide, y + HALF - 1];
     if (this.cut(box, 1) || this.texts.some((other) => meet(box, other.box))) return false;
     this.letter(text, left + wide / 2, y, colour, box);
     return true;
-  }
-
-  /** Return so much of a text as has room, up to a comma, a colon or a semicolon. */
-  shortened(text, room) {
-    let part = text;
-    while (part && this.pen.measureText(part).width > room) part = part.slice(0, Math.max(0, lastStop(part)));
-    return part;
   }
 
   /** @param {Label} label */
@@ -138,14 +111,7 @@ export class LabelledPicture extends Picture {
   }
 
   /** Places of a label, the best first, each with a number of its own. */
-  spotsOf(/** @type {Label} */ { at, along = [], gap = 9, towards, within }, half) {
-    if (within) {
-      const [left, top, right, bottom] = within;
-      const [across, down] = [half + RIM, HALF + 2];
-      const corners = [[left + across, bottom - down], [left + across, top + down]];
-      corners.push([right - across, bottom - down], [right - across, top + down]);
-      return corners.map((spot, key) => ({ key, off: 0, from: at, at: spot }));
-    }
+  spotsOf(/** @type {Label} */ { at, along = [], gap = 9, towards }, half) {
     const [ahead, down] = towards ?? [0, 0];
     const part = (/** @type {number[]} */ [u, v]) => (u * ahead + v * down) / Math.hypot(u, v);
     const sides = towards ? [...SIDES].sort((one, other) => part(other) - part(one)) : SIDES;
@@ -164,15 +130,12 @@ export class LabelledPicture extends Picture {
 
   put(/** @type {Label} */ label) {
     const { id, text, colour, gap = 9 } = label;
-    const half = this.pen.measureText(text).width / 2;
+    const half = this.context.measureText(text).width / 2;
     const spots = this.spotsOf(label, half);
     const boxOf = (/** @type {any} */ { at: [cx, cy] }) => [cx - half - 2, cy - HALF, cx + half + 2, cy + HALF];
     const free = (spot) => !this.cut(boxOf(spot)) && !this.taken.some((other) => meet(boxOf(spot), other));
-    const quiet = (spot) => free(spot) && !this.busy.some((other) => meet(boxOf(spot), other));
-    const before = spots.filter(({ key }) => key === this.places.get(id));
-    const ways = [() => before.find(quiet), () => spots.find(quiet), () => before.find(free), () => spots.find(free)];
-    let spot;
-    for (const way of ways) spot ??= way();
+    const before = spots.find(({ key }) => key === this.places.get(id));
+    const spot = before && free(before) ? before : spots.find(free);
     if (!spot) {
       this.places.delete(id);
       return;
@@ -190,7 +153,7 @@ export class LabelledPicture extends Picture {
 
   /** Write letters that can be read on whatever lies below them, and report their box. */
   letter(text, x, y, colour, box) {
-    const { pen } = this;
+    const { context: pen } = this;
     pen.setLineDash([]);
     pen.textAlign = "center";
     pen.textBaseline = "middle";
@@ -216,11 +179,6 @@ export class LabelledPicture extends Picture {
   cut(/** @type {number[]} */ [left, top, right, bottom], rim = RIM) {
     return !(left >= rim && top >= rim - 1 && right <= this.width - rim && bottom <= this.height - rim + 1);
   }
-}
-
-/** Where the last part of a text begins, after a comma, a colon or a semicolon; negative if it has one part only. */
-function lastStop(text) {
-  return text.search(/[,:;][^,:;]*$/);
 }
 
 /** The part of a way that lies within reach of a picture, or null: a page takes minutes to dash a very long line. */

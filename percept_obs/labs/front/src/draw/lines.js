@@ -94,7 +94,7 @@ export function decades(lines, span, least, most, level = NaN) {
 /** The text equivalent of a chart: where each line begins and ends, and between what it stays. */
 export function chartInWords(/** @type {import("./chart.js").Chart} */ { title, lines }) {
   const parts = lines.map(({ text, id, values }) => {
-    const finite = values.filter(Number.isFinite);
+    const finite = Array.from(values).filter(Number.isFinite);
     if (!finite.length) return `${text ?? id}: nothing to show`;
     const [least, most] = [Math.min, Math.max].map((pick) => finite.reduce((a, b) => pick(a, b)));
     const [first, last, low, high] = [finite[0], finite.at(-1), least, most].map((value) => readable(value));

@@ -29,38 +29,7 @@ export function imageVelocities(place, velocityAt, project) {
   });
 }
 
-/** By how much a copy grows at most; it stays in the scene. */
-const LARGEST = 1.3;
-
-/** Copies of places, all lengths larger or smaller by a swing between -1 and 1: no image moves. */
-export function scaled(places, amount) {
-  const size = LARGEST ** amount;
-  return places.map(({ place, ...more }) => ({ ...more, place: place.map((value) => size * value) }));
-}
-
-/**
- * The step in a hidden image coordinate and the inverse distance that w does not tell, of a size that can be seen,
- * within a reach of the image.
- */
-export function unseenDirection([other, inverse], atInverse, reach = 0.5) {
-  const [first, second] = other === 0 && inverse === 0 ? [0, 1] : [-inverse, other];
-  const size = Math.min((0.5 * Math.abs(atInverse)) / Math.abs(second), Math.min(reach, 0.5) / Math.abs(first));
-  return [size * first, size * second];
-}
-
 /** A x + v for a matrix in rows. */
 export function affine(A, v, x) {
   return A.map((row, i) => row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + v[i]);
-}
-
-/** The mean speed of an image in rows of y1, y2 from one sample to another. */
-export function meanSpeed(time, rows, width, first, [from, to]) {
-  const every = Math.max(1, Math.floor((to - from) / 60));
-  let [way, last] = [0, from];
-  for (let k = from + every; k <= to; k += every) {
-    const step = Math.hypot(...[0, 1].map((c) => rows[k * width + first + c] - rows[last * width + first + c]));
-    if (step > 0) way += step;
-    last = k;
-  }
-  return last > from ? way / (time[last] - time[from]) : 0;
 }

@@ -22,7 +22,7 @@ const [REST, ZOOM_REST] = [150, 400];
 const BETWEEN_TEXTS = 250;
 /** No part of the time in sight is thinner than this part of the whole. */
 const THINNEST = 1e-4;
-/** Seconds from which on a run is long; it opens on its first part where all observers settle within this part of it. */
+/** Seconds from which on a run is long; it opens on its beginning where all observers settle within this part. */
 const [LONG, EARLY] = [10, 0.1];
 /** Settling times that this first part has. */
 const SETTLINGS = 4;

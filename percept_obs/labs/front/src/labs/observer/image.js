@@ -16,7 +16,7 @@ export const MOST = 3;
 export function drawImage(screen, scene, motion, note) {
   const { image: view } = screen;
   const seen = screen.look(scene);
-  const { theme, shown, why } = scene;
+  const { theme, why } = scene;
   const moving = view.glide(imageGoal(screen, scene, seen), motion);
   view.begin(theme);
   const { width, height } = view;

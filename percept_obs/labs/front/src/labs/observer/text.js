@@ -64,8 +64,8 @@ function boundInWords({ settings, bound }, model) {
   if (!bound) return settings.noise.size > 0 ? [noBound(settings, model)].filter(Boolean) : [];
   const left = Number.isFinite(bound.at(-1)) ? ` At the end it is ${percent(bound.at(-1), 2)} of the distance.` : "";
   const uniform = settings.noise.kind === "uniform" ? " It is that of Gaussian noise of the same variance." : "";
-  return [`The dotted line of the error chart is the bound: no unbiased observer has a smaller root mean square error; one run alone ` +
-    `may be below it at times.${left}${uniform}`];
+  return ["The dotted line of the error chart is the bound: no unbiased observer has a smaller root mean square " +
+    `error; one run alone may be below it at times.${left}${uniform}`];
 }
 
 function leastOf({ time, smallest }) {

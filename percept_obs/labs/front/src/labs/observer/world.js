@@ -149,7 +149,8 @@ function worldGoal(screen, scene, { toWorld, inWorld, place }) {
   }
   const size = screen.world.size ?? { width: 350, height: 300 };
   const [wide, high] = [box[1] - box[0], box[3] - box[2]];
-  const scale = Math.min((size.width - 130) / (wide + 0.1 * high), (size.height - 90) / Math.max(1.01 * high, 0.05 * wide));
+  const upwards = Math.max(1.01 * high, 0.05 * wide);
+  const scale = Math.min((size.width - 130) / (wide + 0.1 * high), (size.height - 90) / upwards);
   return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, Math.max(scale, 1e-6)];
 }
 

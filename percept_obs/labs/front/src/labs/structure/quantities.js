@@ -30,22 +30,6 @@ export function rangeOf(result, rows) {
   });
 }
 
-/** The inverse range at the samples, whatever its sign, and the standard deviation that an observer claims of it. */
-export function inverseRange(result, rows, run) {
-  const { choice, width } = result;
-  const at = choice?.unknown.indexOf("d_s") ?? -1;
-  const scaleAt = (k) => (at < 0 ? result.scale : rows[k * width + 3 + at]);
-  const inverse = derived(rows, "inverse range", () => columnOf(rows, width, 2).map((value, k) => value * scaleAt(k)));
-  if (!run?.deviation) return { inverse };
-  // Standard deviation of the product d_s ybar3, to first order.
-  const deviation = derived(run.deviation, "inverse range", () =>
-    columnOf(run.deviation, width, 2).map((own, k) =>
-      Math.hypot(scaleAt(k) * own, at < 0 ? 0 : rows[k * width + 2] * run.deviation[k * width + 3 + at]),
-    ),
-  );
-  return { inverse, deviation };
-}
-
 /** d_s at the samples, estimated or known. */
 function scales({ choice, scale, width, time }, rows) {
   const at = choice?.unknown.indexOf("d_s") ?? -1;
