@@ -8,7 +8,6 @@ import { moduleText } from "../src/engine/modules.js";
 import { constantPath } from "../src/engine/path.js";
 import { Memory } from "../src/engine/memory.js";
 import { serve } from "../src/engine/serving.js";
-import { partIn } from "../src/old/space.js";
 import { thinned } from "../src/engine/thinned.js";
 import { entriesOf, textsOfP } from "../src/labs/points/sparse.js";
 import { loadHere } from "./load_here.js";
@@ -82,7 +81,7 @@ test("while a hand moves fewer samples are drawn: of those in sight most, each a
     time,
     runs: [{ estimate, error: alternating, resets }],
     errors: [alternating],
-    shares: { quiet: time, time, added: time },
+    excitation: { time, smallest: time },
     bound: null,
     whole: true,
   };
@@ -105,10 +104,9 @@ test("while a hand moves fewer samples are drawn: of those in sight most, each a
     );
     assert.equal(found.errors[0], run.error);
     assert.deepEqual(
-      [run.resets, found.shares.time, found.shares.added, found.settings, found.bound],
+      [run.resets, found.excitation.time, found.excitation.smallest, found.settings, found.bound],
       [resets, time, time, result.settings, null],
     );
-    assert.equal(found.shares.quiet.length, at.length);
     const even = run.error.filter((value) => value < 0).length / at.length;
     assert.ok(even > 0.4 && even < 0.6, `${even} of the samples are even`);
     const gaps = at
@@ -277,15 +275,6 @@ test("a path of equal intervals is that of the exponential, whatever the roundin
       assert.ok(Math.abs(points[3 * k - 3 + c] - value) < 1e-13, `${t}: ${points[3 * k - 3 + c]}`),
     );
   });
-});
-
-test("a line is drawn as far as it is on the picture", () => {
-  const box = [[0, 0], [10, 5]];
-  assert.deepEqual(partIn([1, 1], [4, 2], box), [1, 1, 4, 2]);
-  assert.deepEqual(partIn([5, 1], [5, 1e6], box), [5, 1, 5, 5]);
-  assert.deepEqual(partIn([-10, 2], [30, 2], box), [0, 2, 10, 2]);
-  assert.equal(partIn([-1, -1], [-5, 9], box), null);
-  assert.equal(partIn([-4, 2], [2, -4], box), null);
 });
 
 test("an estimate without one of its coordinates has no error, and one behind the camera an infinite one", () => {

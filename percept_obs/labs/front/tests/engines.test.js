@@ -7,8 +7,6 @@ import { Runner } from "../src/engine/runner.js";
 import { short } from "../src/draw/scales.js";
 import { verdict } from "../src/ui/words.js";
 import { translationTowards } from "../src/labs/observer/engine.js";
-import { drawResets } from "../src/old/chart_events.js";
-import { TimeChart, fillBand } from "../src/draw/old_charts.js";
 import { chartOf } from "../src/labs/observer/charts.js";
 import { ENTRIES } from "../src/labs/points/flow.js";
 import { windowsOf } from "../src/labs/points/gramian.js";
@@ -44,57 +42,6 @@ test("a Gramian weighs each direction by what the images would show of it", () =
     const right = (0.5 * (shown(v, 0) + shown(v, 1)) + 1.5 * (shown(v, 1) + shown(v, 2))) / 2;
     assert.ok(Math.abs(found - right) < 1e-14, `${v}: ${found} instead of ${right}`);
   }
-});
-
-test("while a hand moves fewer windows are looked at, and each tells what it tells at rest", () => {
-  const [count, n] = [801, 3];
-  const time = Float64Array.from({ length: count }, (_, k) => 0.05 * k);
-  const images = Float64Array.from({ length: 2 * count }, (_, k) => Math.sin(0.01 * k + (k % 2)));
-  const still = new Float64Array(ENTRIES * count);
-  const back = new Float64Array(9 * count);
-  for (let k = 0; k < count; k++) for (let i = 0; i < 3; i++) still[ENTRIES * k + 5 * i] = back[9 * k + 4 * i] = 1;
-  const model = { block: { N: [[1, 0, 0], [0, 1, 0]], l: [0, 0, 1] }, unseen: 1e-9 };
-  const given = { layout: apart(1), model, n, time, images, kindOf: [0], flows: [still], back: [back], window: 1 };
-  const [moving, resting] = [false, true].map((whole) => windowsOf({ ...given, memory: new Memory(), whole }));
-  assert.ok(moving.time.length < resting.time.length);
-  const at = (found, when) => [found.smallest, found.largest].map((values) => values[found.time.indexOf(when)]);
-  for (const when of moving.time) assert.deepEqual(at(moving, when), at(resting, when));
-});
-
-test("resets have one tick in each column of pixels, however many there are", () => {
-  const place = {
-    left: 10,
-    right: 60,
-    top: 0,
-    words: [],
-    x: (time) => 10 + 5 * (time - 2),
-    timeAt: (x) => 2 + (x - 10) / 5,
-  };
-  const ticks = [];
-  const pen = { fillRect: (x) => ticks.push(x) };
-  const times = Float64Array.from({ length: 3000 }, (_, k) => 0.01 * k - 5).filter((time) => time < 4 || time > 6);
-  drawResets(pen, place, [{ times, colour: "black", text: "" }], { picked: null }, false);
-  const wanted = new Set(Array.from(times, (time) => Math.round(place.x(time))).filter((x) => x >= 10 && x <= 60));
-  assert.deepEqual(ticks, [...wanted]);
-});
-
-test("a band ends where its numbers end, and begins anew behind", () => {
-  const place = { width: 100, x: (time) => time, y: (value) => value };
-  const drawn = [];
-  const pen = {
-    beginPath() {},
-    fill() {},
-    moveTo: (x, y) => drawn.push([["from", x, y]]),
-    lineTo: (x, y) => drawn.at(-1).push(["to", x, y]),
-  };
-  const high = Float64Array.of(5, 6, NaN, 7, 8, Infinity, 9);
-  fillBand(pen, place, { time: Float64Array.from(high, (_, k) => k), low: new Float64Array(7), high, colour: "black" });
-  const outline = ([[, x, y], ...rest]) => [[x, y], ...rest.map(([, ...at]) => at)];
-  assert.deepEqual(drawn.map(outline), [
-    [[0, 5], [1, 6], [1, 0], [0, 0]],
-    [[3, 7], [4, 8], [4, 0], [3, 0]],
-    [[6, 9], [6, 0]],
-  ]);
 });
 
 test("a point that comes anew lies on its ray, and P knows nothing of it and the others", () => {
@@ -167,23 +114,14 @@ test("gaps of two reasons stay two, and each is told with its own", () => {
   time.forEach((_, k) => assert.equal(Number.isNaN(run.estimate[2 * k + 1]), [1, 2, 3, 4, 6].includes(k)));
 });
 
-test("the band is as wide as its title says", () => {
+test("the band of a filter is two of its deviations to either side", () => {
   const [estimate, deviation] = [Float64Array.of(0, 0, 1, 0, 0, 2), Float64Array.of(0, 0, 0.1, 0, 0, 0.3)];
-  const run = { title: "EKF", order: 0, name: "ekf", estimate, deviation, resets: [], divergedAt: null };
-  const time = Float64Array.of(0, 1);
-  const shown = {
-    time,
-    width: 3,
-    names: ["y1", "y2", "y3"],
-    runs: [run],
-    truth: null,
-    settings: { observers: ["ekf"] },
-    leavesAt: null,
-  };
-  const { band, title } = chartOf("inverse", shown, null, { lines: ["black"] });
-  const [, sigmas] = /±(\d)σ/.exec(title);
-  time.forEach((_, k) => {
-    assert.ok(Math.abs(band.high[k] - band.low[k] - 2 * sigmas * deviation[3 * k + 2]) < 1e-14);
+  const run = { title: "EKF", order: 0, name: "ekf", estimate, deviation, resets: [] };
+  const shown = { time: Float64Array.of(0, 1), width: 3, names: ["y1", "y2", "y3"], runs: [run], truth: null };
+  const scene = { shown, ghost: null, chosen: run, kept: "", secret: false, theme: { lines: ["black"] } };
+  const { band } = chartOf("inverse", scene, { low: 0, high: 1 });
+  [0, 1].forEach((k) => {
+    assert.ok(Math.abs(band.high[k] - band.low[k] - 4 * deviation[3 * k + 2]) < 1e-14);
     assert.ok(Math.abs((band.high[k] + band.low[k]) / 2 - estimate[3 * k + 2]) < 1e-14);
   });
 });
@@ -245,18 +183,4 @@ test("what is no number is told as Python tells it", () => {
 test("a motion that was sampled changes evenly between its samples", () => {
   const motion = { times: [0, 2], rows: [[1], [3]], columns: [Float64Array.of(1, 3)] };
   assert.deepEqual([...knownAt(motion, [7], [0, 1, 2]).rows], [1, 7, 2, 7, 3, 7]);
-});
-
-test("lines of a kept run are drawn anew when they are others, and only then", () => {
-  const chart = { kept: [], keptCount: 0 };
-  const count = (...lines) => {
-    const found = TimeChart.prototype.keptOf.call(chart, lines, { kept: "violet" });
-    return [found.length, chart.keptCount];
-  };
-  const [kept, other, own] = ["violet", "violet", "blue"].map((colour) => ({ colour, values: new Float64Array(2) }));
-  assert.deepEqual(count(own), [0, 0]);
-  assert.deepEqual(count(kept, own), [1, 1]);
-  assert.deepEqual(count({ ...kept }, own), [1, 1]);
-  assert.deepEqual(count(other, own), [1, 2]);
-  assert.deepEqual(count(own, kept), [0, 3]);
 });

@@ -5,7 +5,9 @@ import { State } from "../src/state/state.js";
 import { Link } from "../src/ui/link.js";
 import { Lab } from "../src/ui/lab.js";
 
-const OPENING = { gain: 1, seed: 0, period: 0.01, duration: 1, observers: [], pictures: [], kept: null };
+const OPENING = { gain: 1, seed: 0, period: 0.01, duration: 1, observers: [], kept: null };
+
+const VIEW = { more: "", charts: [], chosen: "", side: false, sight: null };
 
 /** An engine that counts what it is asked for. */
 class CountingEngine {
@@ -46,7 +48,7 @@ class SmallKernels {
 
 /** A model of the kernel's side: traits with listeners, as anywidget hands them over. */
 function fakeWidget() {
-  const state = { settings: structuredClone(OPENING), model: { pictures: [], observers: {}, opening: OPENING } };
+  const state = { settings: structuredClone(OPENING), model: { observers: {}, opening: OPENING }, view: VIEW };
   const listeners = {};
   return {
     get: (name) => state[name],
@@ -67,30 +69,19 @@ class SmallLab extends Lab {
   static computing = { Kernels: SmallKernels, Engine: CountingEngine };
 
   constructor(widget) {
-    const words = { reasons: () => [], readingAt: () => "", summaryOf: (_, serial) => ({ serial }) };
+    const words = { reasons: () => [], summaryOf: (_, serial) => ({ serial }), charts: {} };
     super(widget, { schema: {}, ...widget.get("model") }, { words: {}, ...words });
     this.drawings = [];
-    const plane = { draw: (shown, ghost, cursor) => this.drawings.push([shown.value, ghost?.value ?? null, cursor]) };
-    this.planes = [{ ...plane, describe: () => {} }];
+    this.spokenOf = [];
+    const draw = (shown, ghost) => this.drawings.push([shown.value, ghost?.value ?? null, this.state.cursor]);
+    this.screen = { views: [], draw, describe() {}, showCharts() {}, close() {} };
     this.panel = { show: () => {} };
-    this.formulas = { show: () => {} };
+    this.drawer = { show: () => {}, speak: () => this.spokenOf.push(this.answered()?.sentences ?? null) };
     const told = (name) => [name, (value) => (this.told[name] = value)];
     this.told = {};
-    const names = [
-      "problem",
-      "notice",
-      "steps",
-      "words",
-      "rested",
-      "analysis",
-      "answered",
-      "silence",
-      "read",
-      "time",
-      "playing",
-      "close",
-    ];
-    this.follow({ root: { classList: { toggle() {} } }, ...Object.fromEntries(names.map(told)) });
+    const names = ["problem", "notice", "silence"];
+    const root = { classList: { toggle() {} }, style: { setProperty() {} } };
+    this.follow({ root, ...Object.fromEntries(names.map(told)) });
   }
 
   get engine() {
@@ -189,7 +180,6 @@ test("an answer of Python to other settings than those that are shown is not sho
   lab.change({ gain: 5 });
   frame();
   assert.equal(lab.answered(), null);
-  assert.equal(lab.told.answered, null);
   widget.tell("analysis", { serial: first, sentences: ["late"], bound: 2 });
   assert.equal(lab.answered(), null);
   await lab.rest();
@@ -198,10 +188,8 @@ test("an answer of Python to other settings than those that are shown is not sho
   assert.notEqual(lab.link.waitingFor, null);
   widget.tell("analysis", { serial: lab.serial, sentences: ["of gain 5"], bound: 4 });
   assert.equal(lab.answered().bound, 4);
-  const before = lab.told.words;
   frame(10);
-  assert.notEqual(lab.told.words, before, "words follow an answer at once");
-  assert.deepEqual(lab.told.analysis, ["of gain 5"]);
+  assert.deepEqual(lab.spokenOf.at(-1), ["of gain 5"], "words follow an answer at once");
   lab.close();
 });
 
@@ -276,4 +264,60 @@ test("a question and its answer are steps, and the way back leads to the setting
     state.redo();
     assert.deepEqual(at(), step);
   }
+});
+
+test("what is looked at is no part of the settings: it is a step back, and computes nothing again", async () => {
+  const { lab, widget } = await opened();
+  const { settings } = lab;
+  lab.look({ more: "charts" });
+  lab.look({ sight: [0.2, 0.4] });
+  frame(300);
+  await lab.settle();
+  assert.equal(lab.engine.runs, 1);
+  assert.equal(lab.settings, settings);
+  assert.deepEqual(widget.get("view"), { ...VIEW, more: "charts", sight: [0.2, 0.4] });
+  assert.deepEqual(lab.span, { low: 0.2, high: 0.4 });
+  lab.undo();
+  assert.deepEqual([lab.state.view.more, lab.state.view.sight], ["charts", null]);
+  lab.undo();
+  assert.equal(lab.state.view.more, "");
+  lab.look({ sight: [0.2, 0.4] });
+  lab.change({ duration: 3 }, true);
+  assert.equal(lab.state.view.sight, null, "another run is shown whole");
+  lab.close();
+});
+
+test("zooming keeps the time under the hand where it is, inside the run", async () => {
+  const { lab } = await opened();
+  lab.zoom(0.5, 0.5);
+  assert.deepEqual(lab.span, { low: 0.25, high: 0.75 });
+  lab.zoom(0.5, 0.25);
+  assert.deepEqual(lab.span, { low: 0.25, high: 0.5 });
+  lab.zoom(100, 0.3);
+  assert.deepEqual(lab.span, { low: 0, high: 1 });
+  lab.zoom(0.5, 0);
+  assert.deepEqual(lab.span, { low: 0, high: 0.5 });
+  lab.showAll();
+  assert.deepEqual(lab.span, lab.whole);
+  lab.close();
+});
+
+test("a long run of which all observers settle early opens on its beginning, and a short one whole", () => {
+  const found = (settling, last) => {
+    const lab = Object.create(SmallLab.prototype);
+    const settings = { scenario: "one", duration: last };
+    Object.assign(lab, {
+      model: {},
+      state: { settings, view: VIEW },
+      part: { of: "", span: null },
+      shown: { settings, time: [0, last], runs: settling.map((each) => ({ settling: each })) },
+    });
+    lab.findPart();
+    return lab.span.high;
+  };
+  assert.equal(found([2.35], 80), 10);
+  assert.equal(found([2.35, 1], 80), 10);
+  assert.equal(found([2.35, 30], 80), 80);
+  assert.equal(found([2.35, Infinity], 80), 80);
+  assert.equal(found([0.2], 4), 4);
 });

@@ -1,6 +1,5 @@
 // Puts settings into addresses and back, and has labs follow addresses, as standard input asks; prints what came of it.
 import { readFileSync } from "node:fs";
-import { settingsIn, textOf } from "../src/state/address.js";
 import { Address } from "../src/ui/address.js";
 import { ObserverLab } from "../src/labs/observer/lab.js";
 import { PointsLab } from "../src/labs/points/lab.js";
@@ -17,11 +16,11 @@ async function followed(name, model, hash) {
   const lab = Object.create(Lab.prototype);
   const said = { notice: "", visited: null };
   const view = { notice: (text) => (said.notice = text), root: { scrollIntoView() {} } };
-  const visit = (settings) => (said.visited = settings);
+  const visit = (settings, view) => Object.assign(said, { visited: settings, view });
   const fail = (error) => (said.failed = error.message);
   Object.assign(lab, {
     model,
-    state: { settings: model.opening },
+    state: { settings: model.opening, view: model.view.standard },
     kernels: new Lab.computing.Kernels(model, loadHere),
     view,
     visit,
@@ -33,9 +32,13 @@ async function followed(name, model, hash) {
 }
 
 const { models, settings, addresses } = JSON.parse(readFileSync(0, "utf8"));
-const round = ([name, each]) => {
-  const text = textOf(each, models[name]);
-  return { text, back: settingsIn(text, models[name]) };
+const round = ([name, each, looked]) => {
+  const address = Object.create(Address.prototype);
+  address.lab = { model: models[name] };
+  const view = { ...models[name].view.standard, ...looked };
+  const text = address.text(each, view);
+  const back = address.read(text);
+  return { text, back: back.settings, view, seen: back.view };
 };
 const answer = { rounds: settings.map(round), followed: [] };
 for (const [name, hash] of addresses) answer.followed.push(await followed(name, models[name], hash));

@@ -1,7 +1,6 @@
 // Runs lab settings given on standard input with the page's own engine and prints what it would draw.
 import { readFileSync } from "node:fs";
 import { pythonOf } from "../src/labs/observer/code.js";
-import { mapOf } from "../src/labs/observer/bound_map.js";
 import { Engine } from "../src/labs/observer/engine.js";
 import { loadHere } from "./load_here.js";
 import { Kernels } from "../src/labs/observer/kernels.js";
@@ -17,13 +16,7 @@ for (const settings of tasks) {
   const shown = engine.run(settings, kernels.of(settings));
   const answer = { problem: shown.problem ?? null, summary: summaryOf(shown, 1, model) };
   if (!shown.problem) {
-    const square = { centre: [0.5, 0.4], half: 0.75 };
-    const moving = engine.camera.motion(settings, kernels.of(settings));
-    const map = settings.bound.includes("map")
-      ? mapOf(settings, kernels.of(settings), moving, square, 12, model)
-      : null;
-    answer.map = map && numbers(map.relative);
-    answer.code = pythonOf(shown, model, map);
+    answer.code = pythonOf(shown, model);
     answer.time = numbers(shown.time);
     answer.outputs = numbers(shown.outputs);
     answer.truth = numbers(shown.truth);

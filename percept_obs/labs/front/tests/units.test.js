@@ -9,7 +9,7 @@ import { PrintedKernels } from "../src/engine/kernels.js";
 import { moduleText, Modules } from "../src/engine/modules.js";
 import { smallestEigenvalue, windowed } from "../src/labs/observer/measures.js";
 import { uniformFrom } from "../src/engine/random.js";
-import { linearScale, logScale, readable, short, spread } from "../src/draw/scales.js";
+import { linearScale, logScale, readable, roundStep, short, spread } from "../src/draw/scales.js";
 import { held, interpolate, lastSamples, stepGrid } from "../src/engine/tables.js";
 import { inWords, mainly } from "../src/labs/points/directions.js";
 import { absencesOf } from "../src/labs/points/measures.js";
@@ -82,9 +82,11 @@ test("numbers are written as Python writes them", () => {
   assert.equal(readable(-2.5e-7), "−2.5e−7");
 });
 
-test("scales have round ticks that hold the range", () => {
-  assert.deepEqual(linearScale(0.3, 9.2, 4).ticks, [0, 5, 10]);
-  assert.equal(logScale(3e-3, 20).low, 1e-3);
+test("scales hold the range, in whole decades or with some room", () => {
+  const { low, high } = linearScale(1, 9);
+  assert.ok(low < 1 && high > 9 && high - low < 10);
+  assert.deepEqual(logScale(3e-3, 20), { low: 1e-3, high: 100, log: true });
+  assert.deepEqual([0.3, 2, 7].map(roundStep), [0.5, 2, 10]);
   assert.deepEqual(spread([NaN, 1, 2]), [1, 2]);
 });
 

@@ -33,7 +33,7 @@ export class Latest {
     const task = { settings, whole, sight };
     if (this.has(task)) return true;
     if (!this.beside) {
-      Object.assign(this, this.results.of(settings, whole || sight?.complete));
+      Object.assign(this, this.results.of(settings, whole || Boolean(sight?.complete)));
       return true;
     }
     const { asked, waiting } = this;

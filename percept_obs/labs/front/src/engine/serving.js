@@ -37,7 +37,7 @@ function answering(model, kernels, makeEngine, scope) {
     if (same(settings.kept, last.kept)) settings.kept = last.kept;
     Object.assign(last, { settings, kept: settings.kept });
     await Promise.all([settings, settings.kept].filter(Boolean).map((each) => kernels.prepare(each)));
-    const { shown, ghost } = results.of(settings, whole || sight?.complete);
+    const { shown, ghost } = results.of(settings, whole || Boolean(sight?.complete));
     const drawn = whole ? shown : thinned(shown, sight);
     scope.postMessage({ shown: { ...drawn, settings: null }, ...(ghost !== last.ghost && { ghost }) });
     last.ghost = ghost;

@@ -430,7 +430,7 @@ export class Lab extends LabBase {
   }
 
   copy() {
-    return this.parts.pythonOf(this.shown, this.model);
+    return this.parts.pythonOf(this.shown, this.model, this.state.view.charts);
   }
 
   /** Take what Python has found out about settings. */

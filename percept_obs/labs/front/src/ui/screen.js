@@ -7,6 +7,7 @@ import { TimeChart } from "../draw/chart.js";
 import { chartInWords } from "../draw/lines.js";
 import { readable } from "../draw/scales.js";
 import { View } from "../draw/view.js";
+import { same } from "../state/settings.js";
 import { Clock, LONGEST_STALL } from "./clock.js";
 import { Questions } from "./questions.js";
 
@@ -50,6 +51,9 @@ export class Screen {
   spoken = "";
   /** Timer of the sentence that is read out. */
   timer = 0;
+  /** Settings that were compared with those of the opening, and whether they are the same. */
+  compared = null;
+  opened = true;
 
   /** @param {{image: string, world: string, axis: string, why?: boolean}} captions */
   constructor(lab, captions, controls, /** @type {import("./questions.js").Question[]} */ questions) {
@@ -194,6 +198,13 @@ export class Screen {
     this.lab.redraw();
   }
 
+  /** True while nothing was changed. */
+  get opening() {
+    const { settings, model } = this.lab;
+    if (this.compared !== settings) Object.assign(this, { compared: settings, opened: same(settings, model.opening) });
+    return this.opened;
+  }
+
   /** Draw what is shown, as one scene. */
   draw(shown, ghost, theme) {
     const { lab, clock, questions, why } = this;
@@ -211,7 +222,7 @@ export class Screen {
     this.drawn = stamp;
     this.scene = scene;
     const noteOn = (name) => questions.note(name, scene);
-    this.resetButton.hidden = !this.moved || Boolean(questions.open);
+    this.resetButton.hidden = (!this.moved && this.opening) || Boolean(questions.open);
     const times = { span, now, peek: this.peek };
     const late = [
       this.drawImage(scene, motion, noteOn("image")),

@@ -9,7 +9,8 @@ import { seesSize, startWithSize } from "./size.js";
 /** Text of the size that an estimate starts from. */
 const SEEN = { zero: "0", chosen: "recording.outputs[0, 2]" };
 
-export function pythonOf(shown, model) {
+/** The text; with the bound where the chart of errors is shown. */
+export function pythonOf(shown, model, charts = ["error"]) {
   const { settings } = shown;
   const names = new Set(["PerspectiveSystem", "track"]);
   const recorded = model.recordings[settings.scenario];
@@ -42,7 +43,7 @@ export function pythonOf(shown, model) {
     return [name, way === Object.keys(model.observers[name].ways)[0] ? "" : `, switch="${way}"`];
   };
   lines.push(...trackings(settings, model, { makerOf, form: "form", options }));
-  if (shown.bound) {
+  if (shown.bound && charts.includes("error")) {
     names.add("cramer_rao");
     lines.push(
       "bound = cramer_rao(recording, form)",
