@@ -134,11 +134,11 @@ def lab(browser, python):
 @pytest.fixture
 def fresh(lab):
     """The shared lab in its opening state."""
-    from lab_browser import control, rested
+    from lab_browser import RESET, rested
 
-    lab.click(control("reset"))
+    lab.evaluate(RESET)
     rested(lab)
-    lab.locator(".stage .handle").first.scroll_into_view_if_needed()
+    lab.locator(".views").scroll_into_view_if_needed()
     return lab
 
 

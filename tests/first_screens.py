@@ -1,4 +1,4 @@
-"""Labs in pages of their own: opening their first screens, asking a question, and reading what pictures say."""
+"""Labs in pages of their own: opening them, asking a question, and reading what pictures say."""
 
 from contextlib import contextmanager
 
@@ -7,10 +7,10 @@ from lab_browser import control
 
 SIZES = {"cell": (830, 600), "wide": (1240, 680), "phone": (390, 760)}
 
-READY = "() => [...(window.perceptObsLabs ?? [])].some((lab) => lab.first?.scene)"
-WATCHED = """() => { const [{ first, late }] = window.perceptObsLabs;
-    return !late && !first.clock.playing && !first.clock.waiting && first.questions.telling; }"""
-END = "() => { const [{ first }] = window.perceptObsLabs; first.clock.begun = true; first.clock.finish(); }"
+READY = "() => [...(window.perceptObsLabs ?? [])].some((lab) => lab.screen?.scene)"
+WATCHED = """() => { const [{ screen, late }] = window.perceptObsLabs;
+    return !late && !screen.clock.playing && !screen.clock.waiting && screen.questions.telling; }"""
+END = "() => { const [{ screen }] = window.perceptObsLabs; screen.clock.begun = true; screen.clock.finish(); }"
 STILL = """() => new Promise((done) => { const [lab] = window.perceptObsLabs; let [calm, tries] = [0, 0];
     const look = () => { calm = lab.pending || lab.late ? 0 : calm + 1;
         return calm > 2 || ++tries > 300 ? done(true) : requestAnimationFrame(look); };
@@ -27,14 +27,12 @@ TEXTS = """() => {
         drawn.push([this.canvas, text, x, y]);
         fillText.call(this, text, x, y);
     };
-    for (const picture of seen) picture.paintedFor = "";  // what lies below is drawn anew as well
-    lab.stale = true;
-    lab.draw();
+    lab.screen.draw(lab.shown, lab.ghost, lab.theme);
     pen.fillText = fillText;
-    return seen.map(({ canvas, below, figure, width, height, texts }) => {
+    return seen.map(({ canvas, figure, width, height, texts }) => {
         const told = ([, text, x, y]) => texts.some(({ text: other, box }) => text === other
             && box[0] <= x && x <= box[2] && box[1] <= y && y <= box[3]);
-        const own = drawn.filter(([where]) => where === canvas || where === below);
+        const own = drawn.filter(([where]) => where === canvas);
         const { left, top } = figure.getBoundingClientRect();
         const range = document.createRange();
         const above = [...figure.querySelectorAll("button, p, figcaption, text")].filter((node) =>
@@ -53,16 +51,16 @@ TEXTS = """() => {
 """Texts of all pictures in sight, on the canvas and above it, and those that a painter wrote without reporting them."""
 
 COUNTS = """() => {
-    const [{ first }] = window.perceptObsLabs;
+    const [{ screen }] = window.perceptObsLabs;
     const words = (text) => text.split(/[^\\p{L}\\p{N}.]+/u).filter((word) => /[\\p{L}]/u.test(word)).length;
-    const nodes = [...first.body.querySelectorAll("[data-control]")].filter((node) => node.checkVisibility());
-    const said = [...first.body.querySelectorAll("*")].filter((node) => node.checkVisibility() && !node.children.length
+    const nodes = [...screen.body.querySelectorAll("[data-control]")].filter((node) => node.checkVisibility());
+    const said = [...screen.body.querySelectorAll("*")].filter((node) => node.checkVisibility() && !node.children.length
         && !node.closest(".unseen, .handle, canvas, svg")).map((node) => node.textContent);
-    const own = [...first.body.querySelectorAll("label, .sliding > span")].flatMap((node) =>
+    const own = [...screen.body.querySelectorAll("label, .sliding > span")].flatMap((node) =>
         [...node.childNodes].filter((child) => child.nodeType === 3).map((child) => child.textContent));
-    const drawn = first.views.flatMap(({ texts }) => texts.map(({ text }) => text));
-    const { width, height } = first.body.getBoundingClientRect();
-    const area = first.views.reduce((sum, { figure }) => {
+    const drawn = screen.views.flatMap(({ texts }) => texts.map(({ text }) => text));
+    const { width, height } = screen.body.getBoundingClientRect();
+    const area = screen.views.reduce((sum, { figure }) => {
         const box = figure.getBoundingClientRect(); return sum + box.width * box.height; }, 0);
     const counted = words([...said, ...own, ...drawn].join(" "));
     return { controls: nodes.length, words: counted, share: area / (width * height) };
@@ -71,9 +69,10 @@ COUNTS = """() => {
 
 @contextmanager
 def first_screen(browser, lab, size=SIZES["cell"], **options):
-    """A page with a lab's first screen that has drawn; no error of the page is left unseen."""
+    """A page with a lab that has drawn; no error of the page is left unseen."""
     wrong = []
-    page = opened(browser, lab, face="first", viewport=dict(zip(("width", "height"), size, strict=True)), **options)
+    moving = {"reduced_motion": "no-preference", **options}
+    page = opened(browser, lab, viewport=dict(zip(("width", "height"), size, strict=True)), **moving)
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.set_default_timeout(15_000)
     page.wait_for_function(READY)
@@ -91,7 +90,7 @@ def at_the_end(page):
 
 def asked(page, name, answer=0):
     """Ask a question, answer it, and show the end of the run."""
-    page.evaluate("(name) => [...window.perceptObsLabs][0].first.questions.ask(name)", name)
+    page.evaluate("(name) => [...window.perceptObsLabs][0].screen.questions.ask(name)", name)
     page.click(control(f"answer {answer}"))
     page.wait_for_function(DRAWN)
     at_the_end(page)

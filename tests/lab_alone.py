@@ -18,7 +18,7 @@ const binary = (text) => new DataView(Uint8Array.from(atob(text), (c) => c.charC
 const frames = STATE.frames.map((film) => ({ ...film, images: film.images.map(binary) }));
 const state = { ...STATE, texts: binary(STATE.texts), frames };
 const listeners = {};
-const TOLD = ["asked", "settings", "summary"];
+const TOLD = ["view", "settings", "summary"];
 window.held = null;  // a list, while answers are to be held back
 window.heard = (found) => {
     Object.assign(state, found);
@@ -47,13 +47,15 @@ def stated_policy():
     return re.search(r"`(default-src[^`]*)`", text)[1]
 
 
-def opened(browser, lab, policy=None, answers=None, face="workbench", **options):
-    """A page with a lab and nothing else, served under the stated policy or another; `answers` is for its messages."""
+def opened(browser, lab, policy=None, answers=None, **options):
+    """A page with a lab and nothing else, served under the stated policy or another; `answers` is for its messages.
+
+    It shows the end of its run at once, unless motion is asked for.
+    """
     told = {
         name: getattr(lab, name)
-        for name in ("kind", "model", "settings", "summary", "analysis", "error", "asked", "written")
+        for name in ("kind", "model", "settings", "view", "summary", "analysis", "error", "written")
     }
-    told["face"] = face
     told["texts"] = base64.b64encode(lab.texts).decode()
     films = getattr(lab, "frames", [])
     told["frames"] = [{**f, "images": [base64.b64encode(i).decode() for i in f["images"]]} for f in films]
@@ -64,7 +66,7 @@ def opened(browser, lab, policy=None, answers=None, face="workbench", **options)
         "/start.js": ("text/javascript", f"const STATE = {json.dumps(told)};\n{START}"),
         "/lab.js": ("text/javascript", bundle),
     }
-    page = browser.new_page(**options)
+    page = browser.new_page(**{"reduced_motion": "reduce", **options})
     headers = {"Content-Security-Policy": policy or stated_policy()}
 
     def answer(route):
@@ -90,7 +92,7 @@ def following(lab):
 
 @contextmanager
 def answered(browser, lab, **options):
-    """A page with a lab at rest that Python answers, all topics open; no error of the page is left unseen."""
+    """A page with a lab at rest that Python answers, the drawer unfolded; no error of the page is left unseen."""
     page, wrong = opened(browser, lab, answers=following(lab), **options), []
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.set_default_timeout(15_000)

@@ -132,9 +132,9 @@ export class State {
     this.step({ settings: this.before, question: null });
   }
 
-  reset(settings) {
+  reset(settings, view = this.view) {
     this.cursor = null;
-    this.step({ settings, question: null });
+    this.step({ settings, view, question: null });
     this.release();
   }
 }

@@ -68,6 +68,8 @@ export class Lab extends LabBase {
     const { Kernels, Engine } = new.target.computing;
     this.kernels = new Kernels(this.model);
     this.makeEngine = () => new Engine(this.model);
+    /** What is looked at first. */
+    this.opening = this.state.view;
     this.results = new Results(this.kernels, this.makeEngine);
     this.latest = new Latest(this.results, (error) => (error ? this.fail(new Error(error)) : this.schedule()));
     this.hear = () => Object.assign((this.model.written ??= {}), widget.get("written"));
@@ -263,6 +265,13 @@ export class Lab extends LabBase {
     this.view.notice(`${title}. ${changesInWords(before, this.settings, this.parts.names)}`);
   }
 
+  /** Put everything back to the opening, but the drawer, which stays as it is. */
+  reset() {
+    const { more } = this.state.view;
+    this.state.reset(structuredClone(this.model.opening), { ...this.opening, more });
+    this.touched(true);
+  }
+
   goBack() {
     this.state.leave();
     this.touched(true);
@@ -320,6 +329,8 @@ export class Lab extends LabBase {
   /** Tell Python, and those who listen, of settings that have come to rest. */
   async settle() {
     clearTimeout(this.resting);
+    // What stood still under the hand follows now.
+    if (this.resting !== null) this.schedule();
     this.resting = null;
     if (this.pending) this.paint();
     const { settings } = this;
@@ -397,6 +408,8 @@ export class Lab extends LabBase {
       Object.assign(this, { shown, ghost });
       const speaking = this.speaking && shown.whole;
       this.theme ??= themeOf(this.view.root);
+      // What is drawn may be of settings before those that cannot be shown.
+      if (!this.late) this.view.problem(shown.problem || "");
       if (!shown.problem && shown.time.length) {
         this.findPart();
         this.screen.draw(shown, ghost, this.theme);
@@ -413,8 +426,6 @@ export class Lab extends LabBase {
   /** Bring words and controls to what is drawn. */
   speakNow() {
     this.spoken = performance.now();
-    // What is drawn may be of settings before those that cannot be shown.
-    if (!this.late) this.view.problem(this.shown.problem || "");
     this.drawer.show();
     this.drawer.speak();
   }

@@ -79,9 +79,10 @@ const BUILD = {
   },
 };
 
-/** The chart of a name. */
+/** The chart of a name; null while what it shows is not read off the result yet. */
 export function chartOf(name, scene, span) {
   const { shown } = scene;
+  if (name === "excitation" && !shown.excitation) return null;
   const spans = (shown.inside ?? []).map(([begin, end]) => ({ begin, end, text: "" }));
   const resets = name === "excitation" ? [] : resetsOf(scene);
   return { title: CHARTS[name], spans, resets, ...BUILD[name](scene, span) };
