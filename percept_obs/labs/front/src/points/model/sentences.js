@@ -59,8 +59,11 @@ export function seenOf({ engine, model, kernels }, { shown, at, now }) {
   };
 }
 
+/** Metres from which on none are counted. */
+const FAR = 999;
+
 /** A distance as it is written, so that what is small is not nothing. */
-export const metres = (value) => `${value.toFixed(value < 0.1 ? 2 : 1)} m`;
+export const metres = (value) => (value > FAR ? `over ${FAR} m` : `${value.toFixed(value < 1 ? 2 : 1)} m`);
 
 const still = ({ shown: { settings } }) =>
   settings.input === 0 && settings.camera_velocity.every((value) => value === 0);
