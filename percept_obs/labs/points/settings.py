@@ -78,11 +78,11 @@ SCHEMA = Schema(
 )
 
 DRIVE: Settings = {
-    "points": [[2.2, -2.6, 8.5], [-1.4, -2.6, 7.6], [1.9, -2.6, 4.8]],
+    "points": [[1.3, -3.1, 8.0], [-2.3, -3.1, 7.1], [1.0, -3.1, 4.3]],
     "turning": 0.0,
     "input": 0.0,
     "camera_velocity": [5.5, 0.0, 0.0],
-    "motion": "w_c2 = -0.15 cos(1.3t) - v_c1/6; w_b = [0, 2 w_b3 cos(t), 0]",
+    "motion": "w_c2 = -0.05 cos(1.3t) - v_c1/6; w_b = [0, 2 w_b3 cos(t), 0]",
     "size": 1.66667,
     "start": "error",
     "error": 2.5,

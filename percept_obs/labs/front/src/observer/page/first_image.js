@@ -208,7 +208,8 @@ function drawArrows(view, { theme, why, shown: { tolerance } }, seen, at) {
     const [u, v] = tip(velocity);
     if (single !== null) view.line([[px, py], [px + u, py + v]], tint, { width, alpha: 0.3 });
     view.arrow([px, py], tip(parts(velocity)), tint, width);
-    if (guess && !agree && Math.hypot(u, v) > 8) view.tag({ id, text, at: endOf(velocity), colour: tint, rank: 3, gap: 8, towards });
+    const label = { id, text, at: endOf(velocity), colour: tint, rank: 3, gap: 8, towards };
+    if (guess && !agree && Math.hypot(u, v) > 8) view.tag(label);
   };
   if (guess) draw(guess, colour, 5, "expected", "expected", guess);
   const length = Math.hypot(...own) * size;

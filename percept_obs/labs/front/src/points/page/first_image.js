@@ -29,16 +29,17 @@ export function drawImage(screen, scene, motion, note) {
   if (seen.sees) {
     draw(seen.found, blue, { width: 2.5, fill: 0.1 });
     const tips = seen.found.map(on);
+    const ways = tips.map((tip, k) => tip.map((value, c) => at[k][c] - value));
+    const lengths = ways.map((way, k) => (seen.hidden[k] ? 0 : Math.hypot(...way) || 0));
     tips.forEach(([u, v], k) => {
       if (Number.isNaN(u + v)) return;
       view.ring(u, v, 4.5, blue, 2);
-      const way = [at[k][0] - u, at[k][1] - v];
-      const part = 1 - 10 / Math.hypot(...way);
-      if (seen.hidden[k] || !(part > 0)) return;
-      drawPull(view, [u, v], way.map((value) => value * part), blue);
-      const middle = [u + 0.5 * way[0], v + 0.5 * way[1]];
+      const part = 1 - 10 / lengths[k];
+      if (!(part > 0)) return;
+      drawPull(view, [u, v], ways[k].map((value) => value * part), blue);
+      const middle = [u + 0.5 * ways[k][0], v + 0.5 * ways[k][1]];
       const pull = { id: "pull", text: "pull to its ray", at: middle, colour: blue, rank: 4, gap: 5 };
-      if (k === 0 && part > 0.6) view.tag(pull);
+      if (part > 0.6 && lengths[k] === Math.max(...lengths)) view.tag(pull);
     });
     if (seen.off > CLOSE)
       view.tag({ id: "estimate", text: "estimate", at: middleOf(tips), colour: blue, rank: 1, gap: 14 });

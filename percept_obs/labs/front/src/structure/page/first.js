@@ -23,8 +23,9 @@ const [EVERY, FOOT] = [1, 30];
 const [SHORT, IN_FRONT] = [0.15, 0.1];
 /** Words for the reasons of gaps; the first is that of a refused choice. */
 const GAPS = ["cannot be told", "speed near zero", "no estimate yet"];
-const NEAR_ZERO = 0.1;
 const TOO_FAR = "too far to tell";
+/** Metres a second below which a speed is near zero. */
+const NEAR_ZERO = 0.1;
 
 export class StructureFirst extends FirstScreen {
   /** Size of the other world that a hand may take, and the camera's share of the motion in it. */
