@@ -204,7 +204,8 @@ function unseenMarks({ shown, now }) {
 const NAMES = ["nose", "left wing tip", "right wing tip"];
 const hiddenIn = (told, text) => {
   const marks = unseenMarks(told);
-  const named = (p) => (told.shown.settings.state === "independent" ? `mark ${p + 1}` : `the ${NAMES[p]}`);
+  const apart = told.shown.settings.state === "independent";
+  const named = (p) => (apart ? `mark ${p + 1}` : `the ${NAMES[p]} (mark ${p + 1})`);
   return marks.length > 0 && text.toLowerCase() === marks.map(named).join(" and ");
 };
 const stands = ({ shown: { settings: { input, camera_velocity } } }) =>

@@ -72,7 +72,8 @@ const away = ({ hidden }) => hidden.flatMap((one, k) => (one ? [k] : []));
 
 /** The marks that are hidden, by name. */
 function hiddenOnes(facts) {
-  const names = away(facts).map((k) => (isPlane(facts.shown.settings) ? `the ${PARTS[k]}` : `mark ${k + 1}`));
+  const plane = isPlane(facts.shown.settings);
+  const names = away(facts).map((k) => (plane ? `the ${PARTS[k]} (mark ${k + 1})` : `mark ${k + 1}`));
   const text = names.length > 2 ? `${names.length} marks` : names.join(" and ");
   return `${text[0].toUpperCase()}${text.slice(1)} ${names.length > 1 ? "are" : "is"} hidden`;
 }
