@@ -67,8 +67,10 @@ def test_marks_of_a_body_that_is_drawn_late_are_left_alone(page):
 def test_a_mark_is_moved_at_the_depth_that_it_has_now_and_the_others_stay(page, time, mark):
     page.evaluate(SHOW, time)
     before = seen(page)
-    moved = drag(page, f"first mark {mark + 1}", -30, 20)
-    np.testing.assert_allclose(moved, [-30, 20], atol=1.5)  # under the finger
+    picture = page.locator(".view.image").bounding_box()
+    inwards = 30 if middle(page, f"first mark {mark + 1}")[0] < picture["x"] + picture["width"] / 2 else -30
+    moved = drag(page, f"first mark {mark + 1}", inwards, 20)
+    np.testing.assert_allclose(moved, [inwards, 20], atol=1.5)  # under the finger
     after = seen(page)
     assert after["places"][mark][2] == pytest.approx(before["places"][mark][2])
     others = [k for k in range(3) if k != mark]
@@ -129,6 +131,18 @@ def test_there_is_no_copy_where_everything_is_seen_and_the_camera_travels(page):
     page.locator(control("first travel")).fill("0")
     assert seen(page)["copy"] is not None
     assert page.inner_text(".says").startswith("Still")
+
+
+def test_it_opens_with_a_body_that_is_found_and_as_far_off_as_python_says(page):
+    run = points_lab().run()
+    nose, left, right = np.moveaxis((run.estimate - run.truth).reshape(-1, 3, 3), 1, 0)
+    off = np.linalg.norm([nose, nose + left, nose + right], axis=2)
+    assert off[:, 0].mean() > 2
+    assert off[:, -1].mean() < 0.05
+    after = seen(page)
+    np.testing.assert_allclose(after["errors"], off, atol=1e-6)
+    assert after["off"] == pytest.approx(off[:, -1].mean(), abs=1e-6)
+    assert page.inner_text(".says").startswith("Found")
 
 
 def test_the_world_rests_while_the_camera_travels(page):

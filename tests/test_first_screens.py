@@ -284,6 +284,41 @@ def test_the_chart_and_the_keys_of_the_play_button_move_the_time(page):
     assert page.evaluate("() => [...window.perceptObsLabs][0].state.cursor") == 0
 
 
+TEXTS_OF = """(view) => [...window.perceptObsLabs][0].first[view].texts.map(({ text }) => text)"""
+HATCHES = """() => { const [lab] = window.perceptObsLabs; const { first } = lab; let count = 0;
+    for (const view of first.views) view.hatched = () => count++;
+    lab.stale = true;
+    lab.draw();
+    for (const view of first.views) delete view.hatched;
+    return count; }"""
+
+
+def test_nothing_gives_an_answer_away(page):
+    page.evaluate("() => [...window.perceptObsLabs][0].first.questions.ask('straight')")
+    page.wait_for_function(DRAWN)
+    assert page.evaluate(HATCHES) == 0
+    page.click(control("answer 2"))
+    page.wait_for_function(DRAWN)
+    at_the_end(page)
+    assert page.evaluate(HATCHES) == 2
+
+
+def test_a_point_that_leaves_the_picture_is_told_and_pointed_at(browser):
+    with first_screen(browser, observer_lab("ma2005_eq35", duration=20.0)) as page:
+        at_the_end(page)
+        page.evaluate("() => { const [lab] = window.perceptObsLabs; lab.point(10); lab.paint(); }")
+        assert page.inner_text(".says").startswith("The point has left the picture")
+        assert "the point" in page.evaluate(TEXTS_OF, "image")
+
+
+@pytest.mark.parametrize("time", [1.0, 2.0, 4.0])
+def test_both_arrows_and_a_name_stay_on_a_phone(time, browser):
+    with first_screen(browser, observer_lab(), SIZES["phone"]) as page:
+        at_the_end(page)
+        page.evaluate("(time) => { const [lab] = window.perceptObsLabs; lab.point(time); lab.paint(); }", time)
+        assert {"seen", "expected", "seen as expected"} & set(page.evaluate(TEXTS_OF, "image"))
+
+
 BEHIND = """([z]) => { const [lab] = window.perceptObsLabs; const [x, y] = lab.settings.X0;
     lab.change({ X0: [x, y, z] }, true); }"""
 BACK = """() => { const [lab] = window.perceptObsLabs; const [x, y, z] = lab.settings.X0;

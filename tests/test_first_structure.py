@@ -141,6 +141,8 @@ def test_nothing_is_found_while_the_known_speed_passes_zero(page):
         assert (seen["ratio"] is not None) == there, time
         texts = page.evaluate("() => [...window.perceptObsLabs][0].first.world.texts.map(({ text }) => text)")
         assert any(text.startswith("estimate") for text in texts) == there, time
+        charted = page.evaluate("() => [...window.perceptObsLabs][0].first.chart.texts.map(({ text }) => text)")
+        assert any(text.startswith("found") for text in charted) == there, time
 
 
 def test_the_future_of_an_estimate_is_not_given_away(page):

@@ -9,9 +9,12 @@ from percept_obs.figures import look
 from percept_obs.labs.desk import tables
 from percept_obs.labs.desk import texts as desk
 from percept_obs.labs.observer import texts as observer
+from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.points import texts as points
+from percept_obs.labs.points.lab import points_lab
 from percept_obs.labs.shared.printed import FRONT, Parts, file_of, packed, unpacked
 from percept_obs.labs.structure import texts as structure
+from percept_obs.labs.structure.lab import structure_lab
 
 LABS: Mapping[str, Callable[[], Parts]] = MappingProxyType(
     {
@@ -29,6 +32,22 @@ READER = FRONT / "src/labs/desk/model/printed.js"
 """The method of the loops, the marks of all pictures and the reader of formulas, in the page's sources, from which the
 bundle is built."""
 
+MODELS = FRONT / "tests/models.json"
+"""What Python hands to the labs' first screens as they open, for the tests of the page."""
+
+
+def models() -> str:
+    """What Python hands to the page as each lab with a first screen opens, without the schema, as JSON."""
+    labs = {"observer": observer_lab(), "points": points_lab(), "structure": structure_lab()}
+    given = {
+        name: {
+            "model": {**{key: value for key, value in lab.model.items() if key != "schema"}, "written": lab.written},
+            "settings": lab.settings,
+        }
+        for name, lab in labs.items()
+    }
+    return json.dumps(given, ensure_ascii=False) + "\n"
+
 
 def changed(kind: str) -> list[str]:
     """Places at which the shipped file of a lab is not what this package prints."""
@@ -44,6 +63,7 @@ def main() -> None:
         INTEGRATOR.write_text(integrator.for_the_page(), encoding="utf-8")
         LOOKS.write_text(look.for_the_page(), encoding="utf-8")
         READER.write_text(tables.reader(), encoding="utf-8")
+        MODELS.write_text(models(), encoding="utf-8")
     for kind, print_texts in LABS.items():
         file = file_of(kind)
         file.write_bytes(packed(print_texts()))

@@ -78,16 +78,20 @@ SCHEMA = Schema(
 )
 
 DRIVE: Settings = {
-    "points": [[-1.1, -2.6, 4.0], [2.6, -2.6, 5.7], [-0.4, -2.6, 8.0]],
+    "points": [[1.3, -3.1, 8.0], [-2.3, -3.1, 7.1], [1.0, -3.1, 4.3]],
     "turning": 0.0,
     "input": 0.0,
-    "camera_velocity": [4.4, 0.0, 0.0],
-    "motion": "w_c2 = -0.15 cos(1.3t) - v_c1/6; w_b = [0, 2 w_b3 cos(t), 0]",
-    "size": 2.5,
+    "camera_velocity": [5.5, 0.0, 0.0],
+    "motion": "w_c2 = -0.05 cos(1.3t) - v_c1/6; w_b = [0, 2 w_b3 cos(t), 0]",
+    "size": 1.66667,
     "start": "error",
     "error": 2.5,
     "hold": "first",
     "duration": 10.0,
     "window": 10.0,
 }
-"""Settings of a lab that is given none, where they differ: round a resting body, and turning with the travel."""
+"""Settings of a lab that is given none, where they differ: round a resting aeroplane, and turning with the travel.
+
+Its marks are the nose, the left and the right wing tip.  How it heads decides how much the travel tells of it: headed
+like this, its estimate is 0.04 m off after 10 s.
+"""

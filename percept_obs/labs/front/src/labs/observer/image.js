@@ -3,15 +3,18 @@
 import { between, valueBetween, within } from "../../engine/between.js";
 import { indicesIn } from "../../engine/tables.js";
 import { affine } from "../../engine/velocities.js";
+import { expectsAnother, isOut, metres, MOST } from "./sentences.js";
 import { apply, STANDING_THINGS } from "./standing.js";
-import { claimed, metres } from "./told.js";
+import { claimed } from "./told.js";
+
+export { MOST };
 
 /** Names of the copies at other distances. */
 export const HERE = ["half as far", "here", "twice as far"];
 /** Part of the image that the path and what is around it take, at least, in a standing world. */
 const USUAL = [[-0.8, 0.8], [-0.55, 0.55]];
-/** Image coordinates of more than this are not looked at. */
-export const MOST = 3;
+/** Pixels that the longer arrow of motion has at least where there is one, and from the rim to what points outside. */
+const [LEAST, RIM] = [40, 18];
 
 export function drawImage(screen, scene, motion, note) {
   const { image: view } = screen;
@@ -29,13 +32,17 @@ export function drawImage(screen, scene, motion, note) {
   if (seen.film) drawFilm(screen, view, scene, seen, on);
   drawDirections(view, seen, theme);
   const { foe, radius, single } = seen;
-  if (foe && radius) view.hatched((pen) => hatchAround(pen, on(foe), radius * scale, single, width, height));
+  // It would give the answer away.
+  if (foe && radius && !screen.questions.asking) {
+    view.hatched((pen) => hatchAround(pen, on(foe), radius * scale, single, width, height));
+  }
   if (seen.simulated) drawStandingThings(screen, view, scene, seen, on);
   view.line(pathOf(scene).map(on), theme.ink, { width: 1, alpha: seen.simulated ? 0.15 : 0.35 });
   const [px, py] = on(seen.y);
   if (single === 0) view.line([[px, 0], [px, height]], theme.ink, { width: 1, dash: [2, 5] });
   if (single === 1) view.line([[0, py], [width, py]], theme.ink, { width: 1, dash: [2, 5] });
-  if (scene.why || !seen.film) drawArrows(view, scene, seen, [px, py]);
+  if (isOut(seen)) drawOut(view, [px, py], theme);
+  else if (scene.why || !seen.film) drawArrows(view, scene, seen, [px, py]);
   if (foe) {
     const [fx, fy] = on(foe);
     view.dot(fx, fy, 9, theme.raised, 0);
@@ -61,6 +68,16 @@ export function drawImage(screen, scene, motion, note) {
   screen.focus.stand(seen.movable ? foe : null, frame, late);
   screen.point.stand(seen.movable ? seen.y : null, frame, late);
   return moving;
+}
+
+/** Where the point is that has left the picture: an arrow at the rim. */
+function drawOut(view, [px, py], theme) {
+  const [x, y] = [within(px, RIM, view.width - RIM), within(py, RIM, view.height - RIM)];
+  const far = Math.hypot(px - x, py - y);
+  if (!far) return;
+  const [dx, dy] = [(RIM * (px - x)) / far, (RIM * (py - y)) / far];
+  view.arrow([x - dx, y - dy], [1.7 * dx, 1.7 * dy], theme.ink, 3);
+  view.tag({ id: "out", text: "the point", at: [x - dx, y - dy], colour: theme.ink, rank: 0, gap: 8 });
 }
 
 /** Middle and scale of the image in which the path lies. */
@@ -143,7 +160,8 @@ function drawStandingThings(screen, view, scene, { motion, image }, on) {
 }
 
 /** How the point moves in the image, and how it would if the estimate were right; or copies at other distances. */
-function drawArrows(view, { theme, why }, { copies, expects, single, run, up }, at) {
+function drawArrows(view, { theme, why, shown: { tolerance } }, seen, at) {
+  const { copies, expects, single, run, up } = seen;
   const [px, py] = at;
   if (!copies) return;
   const scale = view.at[2];
@@ -152,7 +170,8 @@ function drawArrows(view, { theme, why }, { copies, expects, single, run, up }, 
   // One scale, whether the copies are shown or not.
   const all = [...copies, expects].filter(Boolean).map(flip);
   const longest = Math.max(...all.map((v) => Math.hypot(...v)), 1e-9) * scale;
-  let size = Math.min(4, (Math.min(view.width, view.height) * 0.6) / longest) * scale;
+  const most = Math.min(4, (Math.min(view.width, view.height) * 0.6) / longest) * scale;
+  let size = most;
   for (const velocity of all) {
     const [u, v] = velocity;
     const [across, down] = [u < 0 ? px : view.width - px, v < 0 ? py : view.height - py];
@@ -161,7 +180,8 @@ function drawArrows(view, { theme, why }, { copies, expects, single, run, up }, 
   // The names of the directions stand in the corner.
   const inCorner = (/** @type {number[]} */ [u, v]) => px + size * u < 78 && py + size * v < 72;
   while (all.some(inCorner) && size > 1) size *= 0.9;
-  size = Math.max(size, 0);
+  const longer = Math.max(...shown.map((v) => Math.hypot(...v)), 1e-9);
+  size = Math.max(size, Math.min(most, LEAST / longer));
   const tip = (/** @type {number[]} */ [u, v]) => [size * u, size * v];
   if (why) {
     shown.forEach((velocity, k) => {
@@ -181,18 +201,21 @@ function drawArrows(view, { theme, why }, { copies, expects, single, run, up }, 
   const colour = theme.lines[run.order];
   const [own, guess] = shown;
   const parts = (/** @type {number[]} */ [u, v]) => (single === null ? [u, v] : single === 0 ? [u, 0] : [0, v]);
-  const apart = guess ? Math.hypot(own[0] - guess[0], own[1] - guess[1]) * size > 6 : false;
+  const agree = guess && !expectsAnother(seen, tolerance);
+  const inside = (/** @type {number[]} */ [x, y]) => x > 0 && x < view.width && y > 0 && y < view.height;
+  const endOf = (velocity) => [tip(velocity).map((value, c) => at[c] + value)].find(inside) ?? at;
   const draw = (velocity, tint, width, id, text, towards) => {
     const [u, v] = tip(velocity);
     if (single !== null) view.line([[px, py], [px + u, py + v]], tint, { width, alpha: 0.3 });
     view.arrow([px, py], tip(parts(velocity)), tint, width);
-    if (apart) view.tag({ id, text, at: [px + u, py + v], colour: tint, rank: 3, gap: 8, towards });
+    const label = { id, text, at: endOf(velocity), colour: tint, rank: 3, gap: 8, towards };
+    if (guess && !agree && Math.hypot(u, v) > 8) view.tag(label);
   };
   if (guess) draw(guess, colour, 5, "expected", "expected", guess);
   const length = Math.hypot(...own) * size;
-  if (guess && !apart && length > 20) {
-    const at = [px + size * own[0], py + size * own[1]];
-    view.tag({ id: "agree", text: "seen as expected", at, colour, rank: 3, gap: 8, towards: [own[1], -own[0]] });
+  if (agree && length > 20) {
+    const label = { id: "agree", text: "seen as expected", at: endOf(own), colour, rank: 3, gap: 8 };
+    view.tag({ ...label, towards: [own[1], -own[0]] });
   }
   draw(own, theme.ink, 1.8, "seen", "seen", [own[1], -own[0]]);
 }

@@ -3,22 +3,21 @@
 import { linesOf } from "../../draw/lines.js";
 import { places, range, select } from "../../ui/controls.js";
 import { indicesIn } from "../../engine/tables.js";
-import { columnOf, derived } from "../../engine/derived.js";
 import { between } from "../../engine/between.js";
 import { element } from "../../draw/dom.js";
 import { readable } from "../../draw/scales.js";
 import { changeAt, same, valueAt } from "../../state/settings.js";
 import { claimedDistances } from "../../engine/errors.js";
 import { percent } from "../../ui/words.js";
-import { shapeOf } from "./camera.js";
+import { courseOf, distancesOf, FAR, metres, sentenceOf } from "./sentences.js";
+
+export { metres };
 
 const OUTPUTS = [
   { text: "y1", spoken: "y1 only", value: ["y1"] },
   { text: "both", spoken: "y1 and y2", value: ["y1", "y2"] },
   { text: "y2", spoken: "y2 only", value: ["y2"] },
 ];
-/** The estimate and the truth are written in metres up to this, and in centimetres below that. */
-const [FAR, NEARBY] = [999, 2];
 /** Half an interval, as a part of the distance, from which on its ends are written. */
 const WIDE = 0.3;
 
@@ -27,15 +26,15 @@ export function chartOf(screen, scene) {
   const { time, truth } = shown;
   const { other } = screen.seen;
   const [from, to] = indicesIn(time, span);
-  const distances = (result, rows) => distancesOf(screen, result, rows);
+  const distances = (result, rows) => distancesOf(screen.lab.kernels, result, rows);
   const actual = truth?.length ? distances(shown, truth) : null;
   const lines = linesOf(scene, (result, { estimate }) => distances(result, estimate), () => actual);
   const inSight = (values) => Array.from(values.subarray(from, to + 1)).filter(Number.isFinite);
   const found = lines.filter(({ id }) => id !== "true" && id !== "kept").map(({ values }) => inSight(values));
   const most = actual ? inSight(actual).reduce((high, value) => Math.max(high, value), 0) : median(found.at(-1)) * 2;
   const near = found.flatMap((values) => values.filter((value) => value < 1.5 * most));
-  const since = actual && screen.lab.isSettled(chosen) && chosen.settling > 0 ? time[0] + chosen.settling : Infinity;
-  const told = secret ? since <= now : since < Infinity;
+  const since = actual ? time[0] + courseOf(screen.lab.kernels, shown, chosen).found : Infinity;
+  const told = since > time[0] && (secret ? since <= now : since < Infinity);
   const value = told ? distances(shown, chosen.estimate)[between(time, since).sample] : 0;
   const text = `within ${percent(shown.tolerance, 6)} from ${since.toFixed(1)} s`;
   return {
@@ -45,24 +44,10 @@ export function chartOf(screen, scene) {
       ...lines,
       ...(other ? [{ id: "other", text: other.name, ...other, colour: theme.ink, width: 1.6 }] : []),
     ],
-    spans: unseenSpans(shown),
+    // It would give the answer away.
+    spans: screen.questions.asking ? [] : unseenSpans(shown),
     found: told ? [{ time: since, value, text, colour: theme.lines[chosen.order] }] : [],
   };
-}
-
-/** Distances along the ray of rows of states; as good as infinite where the inverse is not positive. */
-function distancesOf(screen, result, rows) {
-  return derived(rows, "along the ray", () => {
-    const { ray } = screen.lab.kernels.of(result.settings);
-    const out = new Float64Array(3);
-    const seen = [0, 0, ...shapeOf(result.settings)];
-    const inverse = columnOf(rows, 3, 2);
-    return inverse.map((value, k) => {
-      [seen[0], seen[1]] = [rows[3 * k], rows[3 * k + 1]];
-      ray(seen, out);
-      return value > 1e-4 ? Math.hypot(...out) / value : Number.isNaN(value) ? NaN : 1e5;
-    });
-  });
 }
 
 /** Times in which what is measured moves too little with the distance. */
@@ -76,32 +61,10 @@ export function unseenSpans(shown) {
 }
 
 export function sentence(screen, scene) {
-  const { shown, now, end, why } = scene;
-  const { settings, time } = shown;
-  const { seen } = screen;
-  const { chosen: run } = scene;
-  if (seen.other) return `A point without a truth: compare its distance with the ${seen.other.name}.`;
-  if (!seen.truth) return "A recording without a truth: the estimate alone is shown.";
-  const near = unseenSpans(shown).some(({ begin, end: last }) => begin <= now && now <= last);
-  if (why) {
-    if (near) return "One ray, three distances: here all of them move alike.";
-    return "One ray, three distances: the nearer a point is, the faster it moves.";
-  }
-  const found = screen.lab.isSettled(run) && run.settling <= now - time[0];
-  const distance = metres(Math.hypot(...seen.place));
-  const ratio = seen.guess ? Math.hypot(...seen.guess) / Math.hypot(...seen.place) : Infinity;
-  if (run.divergedAt !== null) return `The estimate left every bound after ${run.divergedAt.toFixed(1)} s.`;
-  if (settings.believed && !same(settings.believed, { A: settings.A, b: settings.b }) && now > (time[0] + end) / 2)
-    return `The observer believes another motion: its distance is ${ratio.toFixed(2)} times the true one.`;
-  if (near && !found) return "Too near the focus of expansion: near and far move alike, so there is little to learn.";
-  if (found) {
-    if (now < end || screen.moved || !seen.movable) return `Found: the estimate is on the point, ${distance} away.`;
-    return `Found: ${distance}. Now drag the focus of expansion onto the point.`;
-  }
-  if (now - time[0] < 0.15 * (end - time[0])) return "One image shows the direction of a point, never its distance.";
-  const seconds = (end - time[0]).toFixed(0);
-  if (now >= end) return `Not found in ${seconds} s: the estimate is too ${ratio < 1 ? "near" : "far"}.`;
-  return "The estimate expects another motion than is seen, so it slides along its ray.";
+  const { shown, now, chosen } = scene;
+  const { seen, moved, lab: { kernels } } = screen;
+  const unseen = unseenSpans(shown).some(({ begin, end }) => begin <= now && now <= end);
+  return sentenceOf({ ...scene, ...seen, moved, unseen, course: seen.truth && courseOf(kernels, shown, chosen) });
 }
 
 export function controlsOf(lab) {
@@ -188,10 +151,6 @@ function spansOf(time, holds) {
     else found.push([time[k], time[k]]);
   }
   return found;
-}
-
-export function metres(distance) {
-  return distance > FAR ? "∞" : `${distance.toFixed(distance < NEARBY ? 2 : 1)} m`;
 }
 
 /** The distance of an inverse along a ray, with the interval of two deviations that is claimed, if one is. */

@@ -26,7 +26,7 @@ export class Body {
     this.back = this.flow.map(inversesOf);
     this.rows = rowsOf(model.states[settings.state].layouts[points - 1], n);
     this.unseen = derived(shown.truth, "unseen", () => {
-      const { matrix } = engine.gramian(shown, functions, true, Infinity);
+      const { matrix } = engine.gramian(shown, functions, Infinity);
       const found = eigen(matrix, n);
       const least = model.unseen * Math.max(found[n - 1].value, 1e-300);
       return found.filter(({ value }) => value <= least).map(({ vector }) => vector);

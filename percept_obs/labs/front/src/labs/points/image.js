@@ -4,7 +4,7 @@ import { derived } from "../../engine/derived.js";
 import { within } from "../../engine/between.js";
 import { imageVelocities } from "../../engine/velocities.js";
 import { motionAt } from "./motion.js";
-import { CLOSE, DASH, drawMark, drawOutline, HERE, middleOf, NEAREST, outlineOf } from "./outline.js";
+import { CLOSE, DASH, drawMark, drawOutline, drawPull, HERE, middleOf, NEAREST, outlineOf } from "./outline.js";
 
 /** Image coordinates of more than this are not looked at. */
 const MOST = 1.5;
@@ -13,7 +13,6 @@ export function drawImage(screen, scene, motion, note) {
   const { image: view } = screen;
   const { theme, shown, why } = scene;
   const seen = screen.look(scene);
-  const { state } = shown.settings;
   const moving = view.glide(imageGoal(view, scene), motion);
   view.begin(theme);
   const { width, height } = view;
@@ -23,22 +22,24 @@ export function drawImage(screen, scene, motion, note) {
   const on = ([X, Y, Z]) => (Z > NEAREST ? [x(X / Z), y(Y / Z)] : [NaN, NaN]);
   view.avoid(width - 44, height - 27, 44, 27);
   const blue = theme.lines[0];
-  const draw = (places, colour, look) => drawOutline(view, outlineOf(places, state).map(on), colour, look);
+  const draw = (places, colour, look) => drawOutline(view, outlineOf(places, shown.settings).map(on), colour, look);
   const at = seen.places.map(on);
   draw(seen.places, theme.ink, { fill: why ? 0.06 : 0.14 });
   if (seen.copy) draw(seen.copy, theme.muted, { width: 2, dash: DASH });
   if (seen.sees) {
     draw(seen.found, blue, { width: 2.5, fill: 0.1 });
     const tips = seen.found.map(on);
+    const ways = tips.map((tip, k) => tip.map((value, c) => at[k][c] - value));
+    const lengths = ways.map((way, k) => (seen.hidden[k] ? 0 : Math.hypot(...way) || 0));
     tips.forEach(([u, v], k) => {
       if (Number.isNaN(u + v)) return;
       view.ring(u, v, 4.5, blue, 2);
-      const way = [at[k][0] - u, at[k][1] - v];
-      const part = 1 - 10 / Math.hypot(...way);
-      if (seen.hidden[k] || !(part > 0)) return;
-      view.arrow([u, v], way.map((value) => value * part), blue, 1.8);
-      const middle = [u + 0.5 * way[0], v + 0.5 * way[1]];
-      if (k === 0 && part > 0.6) view.tag({ id: "pull", text: "pull", at: middle, colour: blue, rank: 4, gap: 5 });
+      const part = 1 - 10 / lengths[k];
+      if (!(part > 0)) return;
+      drawPull(view, [u, v], ways[k].map((value) => value * part), blue);
+      const middle = [u + 0.5 * ways[k][0], v + 0.5 * ways[k][1]];
+      const pull = { id: "pull", text: "pull to its ray", at: middle, colour: blue, rank: 4, gap: 5 };
+      if (part > 0.6 && lengths[k] === Math.max(...lengths)) view.tag(pull);
     });
     if (seen.off > CLOSE)
       view.tag({ id: "estimate", text: "estimate", at: middleOf(tips), colour: blue, rank: 1, gap: 14 });

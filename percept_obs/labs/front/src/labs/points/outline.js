@@ -1,6 +1,7 @@
-// A body as it is drawn: a dart whose nose and wing tips are its three marks, or a polygon through all marks.
+// A body as it is drawn: an aeroplane whose nose and wing tips are its three marks, or a polygon through all marks.
 
 import { meet } from "../../draw/labels.js";
+import { isPlane } from "./sentences.js";
 
 /** Names of the copies at other distances; the dashes of a copy. */
 export const HERE = ["near, small", "here", "far, large"];
@@ -10,16 +11,25 @@ export const CLOSE = 0.4;
 /** Depth before the camera, in metres, below which nothing is drawn. */
 export const NEAREST = 0.2;
 
-/** How far the notch between the wings of a dart is from the nose, as a share of the way to each wing. */
-const NOTCH = 0.4;
+/**
+ * Half of the outline of an aeroplane, from nose to tail: parts of the way from between its wing tips to the nose, and
+ * of the way to the left wing tip.  The marks are at [1, 0] and [0, 1].
+ */
+const HALF = [
+  [1, 0], [0.83, 0.08], [0.39, 0.1], [0.09, 1], [-0.13, 1], [0.03, 0.1], [-0.44, 0.06], [-0.58, 0.36], [-0.72, 0.36],
+  [-0.65, 0],
+];
+const PLANE = [...HALF, ...HALF.slice(1, -1).reverse().map(([ahead, left]) => [ahead, -left])];
 
-/** Places of the outline of a body with its marks at these places; none for points without a body. */
-export function outlineOf(places, state) {
-  if (state === "independent" || places.length < 2) return [];
-  if (places.length !== 3) return places;
+/** Places of the outline of points with their marks at these places; none for points without a body. */
+export function outlineOf(places, settings) {
+  if (settings.state === "independent" || places.length < 2) return [];
+  if (!isPlane(settings)) return places;
   const [nose, left, right] = places;
-  const notch = nose.map((value, i) => value + NOTCH * (left[i] + right[i] - 2 * value));
-  return [nose, left, notch, right];
+  const middle = middleOf([left, right]);
+  return PLANE.map(([ahead, aside]) =>
+    middle.map((value, i) => value + ahead * (nose[i] - value) + (aside * (left[i] - right[i])) / 2),
+  );
 }
 
 /** Draw a closed outline; labels keep away from it. */
@@ -36,8 +46,13 @@ export function drawOutline(view, corners, colour, { width = 1.5, fill = 0, dash
     pen.globalAlpha = 1;
   }
   view.line(closed, colour, { width, dash });
-  if (corners.length === 4) view.line([corners[0], corners[2]], colour, { dash, alpha: 0.5 });
   corners.forEach((corner, k) => view.avoidLine(corner, closed[k + 1]));
+}
+
+/** Draw an arrow from which labels keep away along all of its length. */
+export function drawPull(view, from, way, colour) {
+  view.arrow(from, way, colour, 1.8);
+  view.avoidLine(from, [from[0] + way[0], from[1] + way[1]]);
 }
 
 /** Draw a mark with its number, or one that is hidden. */

@@ -1,6 +1,7 @@
 // Questions of the first screen.  What an answer claims is a condition on the result; `right` counts from 0.
 
 import { settingsOf } from "../../state/settings.js";
+import { foundAfter, meanErrorOf } from "./sentences.js";
 
 const lastOf = (values) => values[values.length - 1];
 /** Seconds in which a mark is hidden. */
@@ -13,11 +14,6 @@ function asked(before, after) {
   return { before: round({ changes: before }), after: round({ changes: after, beside: before }) };
 }
 
-/** How far the estimate is off, in metres: the mean of its points, or of some of them, at each sample. */
-export function meanError({ errors }, which = errors.map((_, k) => k)) {
-  return errors[0].map((_, s) => which.reduce((sum, k) => sum + errors[k][s], 0) / which.length);
-}
-
 /** The largest distance in the image between a point that is seen at the end and its estimate. */
 function offRays({ images, estimated }) {
   const count = images.length;
@@ -26,7 +22,19 @@ function offRays({ images, estimated }) {
 }
 
 const sampleAt = ({ time }, when) => Math.max(0, time.findIndex((value) => value >= when));
-const settles = ({ settling }) => Number.isFinite(settling);
+const isFound = (result) => Number.isFinite(foundAfter(result));
+const endOff = (result) => lastOf(meanErrorOf(result));
+
+/** True if an error gets smaller and smaller from one time to another, up to a hundredth of what it begins with. */
+function shrinks(error, from, to) {
+  const spare = 0.01 * error[from];
+  let least = error[from];
+  for (let k = from; k <= to; k++) {
+    if (error[k] > least + spare) return false;
+    least = Math.min(least, error[k]);
+  }
+  return least < 0.5 * error[from];
+}
 const onChart = (when) => ({ shown }) => ({ time: shown.time[sampleAt(shown, when)], own: sampleAt(shown, when) });
 
 /** @type {import("../../ui/questions.js").Question[]} */
@@ -34,18 +42,19 @@ export const QUESTIONS = [
   {
     name: "hide",
     chip: "Hide a mark?",
-    ask: "Mark 2 is hidden from 1 to 6 s. What does its own error do meanwhile?",
+    ask: "The nose, mark 1, is hidden from 1 to 6 s. What does its own error do meanwhile?",
     answers: ["It stays", "It grows", "It shrinks"],
     right: 2,
-    ...asked({}, { hidden: [null, AWAY, null] }),
+    ...asked({}, { hidden: [AWAY, null, null] }),
     kept: "never hidden",
-    tells: "It shrinks: marks 1 and 3 pull the one body that mark 2 belongs to, and carry it along.",
+    tells: "It shrinks: the wing tips, marks 2 and 3, are still pulled, and the nose belongs to the same body.",
     on: "chart",
     note: "unseen, yet it shrinks",
-    spot: onChart(5),
+    spot: onChart(3),
     holds: ({ shown }) => {
-      const [begun, ended] = AWAY.map((when) => shown.errors[1][sampleAt(shown, when)]);
-      return ended < 0.5 * begun && shown.absences[1].length === 1;
+      const [from, to] = AWAY.map((when) => sampleAt(shown, when));
+      const [{ first, last }, ...more] = shown.absences[0];
+      return first <= from && last >= to - 1 && !more.length && shrinks(shown.errors[0], from, to);
     },
   },
   {
@@ -78,7 +87,7 @@ export const QUESTIONS = [
     note: "the same pictures",
     spot: () => ({ at: "copy" }),
     holds: ({ shown, ghost, body }) =>
-      offRays(shown) < 0.01 && lastOf(meanError(shown)) > 1.2 && body.unseen.length === 3 && settles(ghost),
+      offRays(shown) < 0.01 && endOff(shown) > 1 && body.unseen.length === 3 && isFound(ghost),
   },
   {
     name: "turn",
@@ -97,21 +106,21 @@ export const QUESTIONS = [
       const [direction] = body.unseen;
       const size = Math.hypot(...truth.subarray(0, n));
       const along = direction?.reduce((sum, value, i) => sum + (value * truth[i]) / size, 0);
-      return body.unseen.length === 1 && Math.abs(along) > 1 - 1e-6 && lastOf(meanError(shown)) > 0.3;
+      return body.unseen.length === 1 && Math.abs(along) > 1 - 1e-6 && endOff(shown) > 0.3;
     },
   },
   {
     name: "gain",
     chip: "More gain?",
-    ask: "The gain is 4 instead of 0.4: each pull is ten times as strong. Is the body found sooner?",
+    ask: "The gain is 6 instead of 0.6: each mark is pulled to its ray ten times as hard. Is the body found sooner?",
     answers: ["Much sooner", "A little sooner", "Later"],
     right: 2,
-    ...asked({}, { size: 0.25 }),
-    kept: "gain 0.4",
-    tells: "Later: a strong pull holds it on its rays at once, and then too little is left to tell how far.",
+    ...asked({}, { size: 0.166667 }),
+    kept: "gain 0.6",
+    tells: "Later: pulled hard, the estimate is on its rays at once, and then too little is left to tell how far.",
     on: "chart",
     note: "on its rays, not in place",
     spot: onChart(6),
-    holds: ({ shown, ghost }) => offRays(shown) < 0.04 && !settles(shown) && settles(ghost),
+    holds: ({ shown, ghost }) => offRays(shown) < 0.04 && !isFound(shown) && isFound(ghost),
   },
 ];

@@ -1,12 +1,12 @@
 // The screen of the lab of many points: a body's estimate is pulled, mark by mark, on to the rays of the marks.
 
 import { Screen } from "../../ui/screen.js";
-import { valueBetween, within } from "../../engine/between.js";
-import { Body } from "./body.js";
+import { within } from "../../engine/between.js";
 import { PointsEngine } from "./engine.js";
 import { QUESTIONS } from "./questions.js";
+import { PARTS, seenOf, sentenceOf } from "./sentences.js";
 import { drawImage } from "./image.js";
-import { chartOf, controlsOf, meanErrorOf, sentenceOf } from "./told.js";
+import { chartOf, controlsOf } from "./told.js";
 import { drawWorld } from "./world.js";
 
 const CAPTIONS = { image: "What the camera sees", world: "The world from above", axis: "How far the estimate is off" };
@@ -16,8 +16,6 @@ const IN_HAND = 3;
 const [LEAST_ERROR, MOST_ERROR] = [0.5, 4];
 /** How much the copy of the first look grows and shrinks, and milliseconds of a swing. */
 const [SWING, SWINGS] = [0.45, 2600];
-/** What no picture shows may move no point, as an origin of its own does. */
-const LEAST_REACH = 1e-6;
 
 export class PointsScreen extends Screen {
   /** Amounts of the directions that no picture shows, as a hand has dragged the copy. */
@@ -30,7 +28,7 @@ export class PointsScreen extends Screen {
     this.engine = new PointsEngine(lab.model);
     this.marks = Array.from({ length: IN_HAND }, (_, k) =>
       this.handle(this.image, {
-        ...{ name: `mark ${k + 1}`, label: `Mark ${k + 1}; press it to hide it` },
+        ...{ name: `mark ${k + 1}`, label: `Mark ${k + 1}, the ${PARTS[k]}; press it to hide it` },
         onMove: (place) => this.aim(k, place),
         onPress: () => this.hide(k),
       }),
@@ -90,18 +88,14 @@ export class PointsScreen extends Screen {
   // What is seen at a time.
 
   look(scene) {
-    const { lab } = this;
-    const { shown, at, now, secret, why } = scene;
-    const body = new Body(this.engine, lab.model, shown, lab.kernels.of(shown.settings), at);
-    const places = body.places(body.state(shown.truth));
-    const found = body.places(body.state(shown.estimate));
+    const { lab: { model, kernels }, engine } = this;
+    const { now, secret, why } = scene;
+    const seen = seenOf({ engine, model, kernels }, scene);
+    const { body, places, found } = seen;
     const world = (list) => list.map((place) => body.toWorld(place));
-    const hidden = places.map((_, k) => Number.isNaN(shown.outputs[2 * (at.sample * shown.points + k)]));
     const untouched = !this.questions.open && !this.moved && !this.clock.playing;
     const prelude = secret && !this.left && now <= this.clock.start && untouched;
     if (!prelude) this.left = true;
-    const reach = (k) => body.movable(k).reduce((sum, [x, z]) => sum + x * x + z * z, 0);
-    const held = places.map((_, k) => k).sort((one, other) => reach(other) - reach(one))[0];
     let copy = /** @type {number[][] | null} */ (null);
     if (prelude) {
       // Nothing moves before somebody looks.
@@ -109,14 +103,13 @@ export class PointsScreen extends Screen {
       this.looked ||= performance.now();
       const size = Math.exp(SWING * Math.sin((2 * Math.PI * (performance.now() - this.looked)) / SWINGS));
       copy = places.map((place) => place.map((value) => size * value));
-    } else if (reach(held) > LEAST_REACH && !secret && !why) {
+    } else if (seen.free && !secret && !why) {
       if (this.amounts?.length !== body.unseen.length) this.amounts = body.larger();
       copy = body.copy(this.amounts);
     }
     this.seen = {
-      ...{ body, places, found, hidden, prelude, copy, held },
-      ...{ inWorld: world(places), foundInWorld: world(found), copyInWorld: copy && world(copy) },
-      off: valueBetween(meanErrorOf(shown), 1, 0, at),
+      ...seen,
+      ...{ prelude, copy, inWorld: world(places), foundInWorld: world(found), copyInWorld: copy && world(copy) },
       sees: !prelude && !why,
     };
     scene.body = body;
@@ -140,6 +133,6 @@ export class PointsScreen extends Screen {
   }
 
   sentence(scene) {
-    return sentenceOf(scene, this.seen, this.moved);
+    return sentenceOf({ ...scene, ...this.seen, moved: this.moved });
   }
 }

@@ -4,13 +4,13 @@ import { drawCamera, drawCone, drawGround } from "../../draw/map.js";
 import { derived } from "../../engine/derived.js";
 import { between, within } from "../../engine/between.js";
 import { Body } from "./body.js";
-import { CLOSE, DASH, drawMark, drawOutline, HERE, middleOf, NEAREST, outlineOf } from "./outline.js";
+import { metres } from "./sentences.js";
+import { CLOSE, DASH, drawMark, drawOutline, drawPull, HERE, middleOf, NEAREST, outlineOf } from "./outline.js";
 
 export function drawWorld(screen, scene, motion, note) {
   const { world: view, seen } = screen;
   const { shown, theme, why, now } = scene;
   const { body } = seen;
-  const { state } = shown.settings;
   const moving = view.glide(worldGoal(screen, scene), motion);
   view.begin(theme);
   const { width, height } = view;
@@ -28,7 +28,7 @@ export function drawWorld(screen, scene, motion, note) {
   const path = pathOf(screen, scene);
   const past = path.filter(({ time }) => time <= now);
   view.line([...past.map(({ camera: place }) => on(place)), camera], theme.ink, { width: 2, alpha: 0.3 });
-  const draw = (places, colour, look) => drawOutline(view, outlineOf(places, state).map(on), colour, look);
+  const draw = (places, colour, look) => drawOutline(view, outlineOf(places, shown.settings).map(on), colour, look);
   seen.places.forEach((place, k) => {
     if (seen.hidden[k]) return;
     view.line([camera, seenFrom(place.map((value) => 1.7 * value))], theme.ink, { width: 1, alpha: 0.5 });
@@ -63,9 +63,9 @@ export function drawWorld(screen, scene, motion, note) {
       // The pull is y Z - (X, Y) of the estimate, in metres: straight across to the ray at its own depth.
       if (seen.hidden[k] || !(place[2] > NEAREST)) return;
       const foot = seenFrom([(X / Z) * place[2], place[1], place[2]]);
-      view.arrow(at, [foot[0] - at[0], foot[1] - at[1]], blue, 1.8);
+      drawPull(view, at, [foot[0] - at[0], foot[1] - at[1]], blue);
     });
-    const text = `estimate, ${seen.off.toFixed(1)} m off`;
+    const text = `estimate, ${metres(seen.off)} off`;
     view.tag({ id: "estimate", text, at: middleOf(seen.foundInWorld.map(on)), colour: blue, rank: 0, gap: 16 });
   }
   seen.inWorld.forEach((place, k) => drawMark(view, on(place), k + 1, seen.hidden[k], theme));

@@ -2,8 +2,9 @@
 
 import { within } from "../../engine/between.js";
 import { readable, roundStep } from "../../draw/scales.js";
+import { speed } from "./sentences.js";
 import { TRUE } from "./worlds.js";
-import { cameraAbove, carAbove, metres, speed, WIDE } from "./marks.js";
+import { cameraAbove, carAbove, metres, WIDE } from "./marks.js";
 
 /** Which figure is drawn: the others are 0 and 2. */
 const [SMALL, RIGHT, LARGE, ESTIMATE] = [0, 1, 2, 3];
@@ -45,6 +46,7 @@ export function drawMap(view, first, scene, note) {
   const on = (place) => [x(place[0]), y(place[2])];
   if (first.moved && !first.questions.open) view.avoid(width - 56, 22, 56, 22);
   drawGround(view, { x, y, cx, cz, scale }, theme);
+  drawDirections(view, theme);
   if (seen.free) {
     const which = (value) => on(worlds.places({ ...less, [stories ? "share" : "size"]: value }, now).object);
     const [from, label, to] = (stories ? [0, 0.75, 1.3] : [0.15, 1.4, 2.5]).map(which);
@@ -146,6 +148,16 @@ function drawSpeed(view, first, { world, k, colour, scale }, camera, { now, them
     if (told) view.tag({ ...tip, id: "speed", text, rank: 4 });
   }
   if (k === ESTIMATE) view.tag({ ...tip, id: "estimated speed", text: `estimate ${total} m/s`, rank: 1 });
+}
+
+/** What ahead and sideways are: all cameras look up the map. */
+function drawDirections(view, theme) {
+  const [x, y] = [14, view.height - 14];
+  view.arrow([x, y], [0, -28], theme.muted, 1.3);
+  view.arrow([x, y], [28, 0], theme.muted, 1.3);
+  view.write("ahead", x + 8, y - 28, theme.muted, "left");
+  view.write("sideways", x + 36, y, theme.muted, "left");
+  view.avoid(x + 14, y - 14, 18);
 }
 
 /** Lines, and the length of one of their squares. */

@@ -92,6 +92,5 @@ export function cameraAbove(view, [x, y], colour, { full = false, alpha = 1, siz
   view.avoid(x, y + 3 * size, 11 * size);
 }
 
-/** Speeds and lengths, as they are written. */
-export const speed = (value) => (Math.abs(value) < 0.05 ? "0.0" : value.toFixed(1)).replace("-", "−");
+/** Lengths as they are written. */
 export const metres = (value) => `${readable(Number(value.toPrecision(2)))} m`;

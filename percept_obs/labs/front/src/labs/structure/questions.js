@@ -79,7 +79,7 @@ export const QUESTIONS = [
       kept: asked({ rests: true, ahead: true }, { ...BACK, ...NEVER })(model),
     }),
     kept: "without a pause",
-    tells: "Zero is zero in every world. Without the pause (dashed), noise is divided by almost nothing.",
+    tells: "It pauses: while the camera stands, all worlds look alike. Without the pause (dotted), noise wins.",
     on: "chart",
     note: "nothing to compare",
     spot: ({ shown }) => {

@@ -8,9 +8,10 @@ import { element } from "../../draw/dom.js";
 import { KEPT } from "../../draw/looks.js";
 import { isSampled } from "./camera.js";
 import { QUESTIONS } from "./questions.js";
-import { estimatedSpeeds, knowledgeOf, ratiosOf, TRUE, unknownOf, Worlds } from "./worlds.js";
+import { hasStories, NEARLY, seenOf, sentenceOf, speed } from "./sentences.js";
+import { knowledgeOf, ratiosOf, TRUE, unknownOf, Worlds } from "./worlds.js";
 import { drawMap, placeOfMap } from "./map.js";
-import { carAside, HIGH, metres, speed } from "./marks.js";
+import { carAside, HIGH, metres } from "./marks.js";
 
 const CAPTIONS = { image: "Three films", world: "From above", axis: "Estimate over truth" };
 /** Sizes of the other worlds at the start; one is moved by hand, between two bounds, as is its story. */
@@ -20,12 +21,11 @@ const BOUNDS = { size: [0.3, 2.5], share: [0, 1.5] };
 const [EVERY, FOOT] = [1, 30];
 /** Part of the run before which a way is too short to be dragged, and of its depth that an object keeps at least. */
 const [SHORT, IN_FRONT] = [0.15, 0.1];
-/** Seconds between gaps that are hatched as one, so that noise does not tear them. */
-const TORN = 0.1;
-/** Numbers of the reasons for gaps, and their words; the first is that of a refused choice. */
-const [NEARLY, LEFT_OVER] = [1, 2];
+/** Words for the reasons of gaps; the first is that of a refused choice. */
 const GAPS = ["cannot be told", "speed near zero", "no estimate yet"];
 const TOO_FAR = "too far to tell";
+/** Metres a second below which a speed is near zero. */
+const NEAR_ZERO = 0.1;
 
 export class StructureScreen extends Screen {
   /** Size of the other world that a hand may take, and the camera's share of the motion in it. */
@@ -87,8 +87,7 @@ export class StructureScreen extends Screen {
 
   /** True where the size is known and both speeds along an axis are open: one film, many stories. */
   get stories() {
-    const { known } = this.worlds;
-    return known.size && known.story.some(Boolean);
+    return hasStories(this.worlds.known);
   }
 
   /** The two worlds beside the true one. */
@@ -99,27 +98,14 @@ export class StructureScreen extends Screen {
 
   look(scene) {
     const { lab } = this;
-    const { shown, chosen: run, now, at } = scene;
+    const { shown } = scene;
     if (this.worlds?.shown !== shown) {
       const functions = lab.kernels.of(shown.settings);
       const { camera } = lab.results.engines[0];
       this.worlds = new Worlds(shown, (times) => camera.velocities(shown.settings, functions, times));
     }
     scene.worlds = this.worlds;
-    const { known } = this.worlds;
-    const ratios = run && ratiosOf(this.worlds, shown, run);
-    const gaps = joined(run?.gaps ?? []);
-    const why = gaps.find(([begin, end]) => begin <= now && now <= end)?.[2] ?? 0;
-    const settled = run ? foundAt(run, shown) : Infinity;
-    this.seen = {
-      ...{ run, ratios, known, gaps, why, settled, others: run ? this.othersAt(scene) : [] },
-      ratio: run && !why ? ratios[at.sample] : NaN,
-      estimate: run && !why && known.size ? estimatedSpeeds(this.worlds, shown, run, at) : null,
-      told: Boolean(run),
-      free: Boolean(shown.refusal) && !known.nothing,
-      found: settled <= now && !why,
-      reading: this.worlds.reading(now),
-    };
+    this.seen = { ...seenOf(this.worlds, scene), others: this.othersAt(scene) };
     return this.seen;
   }
 
@@ -240,7 +226,7 @@ export class StructureScreen extends Screen {
 
   chartOf(scene) {
     const { shown, ghost, theme, secret, now, end } = scene;
-    const { run, ratios, settled, known, free } = this.seen;
+    const { run, ratios, settled, known, free, why } = this.seen;
     const { time } = shown;
     const quantity = known.size ? "speed" : "distance";
     const times = Float64Array.from({ length: 41 }, (_, k) => time[0] + ((end - time[0]) * k) / 40);
@@ -249,7 +235,8 @@ export class StructureScreen extends Screen {
     const colour = run ? theme.lines[run.order] : theme.ink;
     const from = run ? ratios.findIndex(Number.isFinite) : -1;
     const begun = from >= 0 && (!secret || time[from] <= now);
-    const found = Number.isFinite(settled) && (!secret || settled <= now);
+    // Nothing is found where nothing can be told.
+    const found = Number.isFinite(settled) && (!secret || settled <= now) && !why;
     const estimated = () => ({ time: time.subarray(from), values: ratios.subarray(from), colour, width: 3, secret });
     return {
       ...{ unit: "", mark: (value) => (value ? `×${value}` : "0"), spans: this.spansOf(scene) },
@@ -292,31 +279,21 @@ export class StructureScreen extends Screen {
     return (free ? [[shown.time[0], end, 0]] : gaps).flatMap(([begin, until, why]) => {
       const span = { begin, end: Math.min(until, last) };
       const who = free && known.size ? "who moves " : "";
-      const text = why === NEARLY && known.size ? TOO_FAR : `${who}${GAPS[why]}`;
+      const slow = !known.size && this.passesZero(begin, until);
+      const text = why === NEARLY && !slow ? TOO_FAR : `${who}${GAPS[why]}`;
       const wide = (span.end - begin) * this.chart.width > 7 * text.length * (end - shown.time[0]);
       return begin < last ? [{ ...span, text: wide ? text : "" }] : [];
     });
   }
 
-  sentence({ now, end, why, shown }) {
-    const { known, run, free, found, estimate, reading, ...seen } = this.seen;
-    if (why && this.stories) return "In each story the car is in the same direction, as large: the same film.";
-    if (why) return "Ways and distances grow together, so all directions stay: the same film.";
-    if (known.nothing) return "All of it is known: nothing is left to estimate.";
-    if (free && this.stories) return "Cannot be told: who moves. The film shows the difference of two speeds only.";
-    if (free && !known.rests) return "Cannot be told: how large and far the car is, for it may drive itself.";
-    if (free && now < (shown.time[0] + end) / 2) return "Is it a small car near, or a large one far?";
-    if (free && this.moved) return "A whole family of worlds makes this film: small, near, slow or large, far, fast.";
-    if (free) return "The film cannot tell which. Tick a speed.";
-    if (run.divergedAt !== null) return `The estimate left every bound after ${run.divergedAt.toFixed(1)} s.`;
-    if (seen.why === NEARLY && known.size) return "The car is so far that noise would make the most of an estimate.";
-    if (seen.why === NEARLY) return "The known speed is near zero, in every world: no estimate now.";
-    if (seen.why === LEFT_OVER) return "No estimate yet: what the observer began with still counts for too much.";
-    if (found && estimate && !known.rests) return "Found: the car's own speed, as its size and the camera's are known.";
-    if (found && estimate) return "Found: with the size known, the film tells the camera's speed.";
-    if (found) return `Found: only the true world needs the ${speed(reading?.value ?? 0)} m/s that are read.`;
-    if (estimate) return "The size is known, so the film tells a speed.";
-    return "Each world needs another speed. The estimate slides to the one that is read.";
+  /** True where the known speed is near zero at some time of a span. */
+  passesZero(begin, end) {
+    const times = Array.from({ length: 21 }, (_, k) => begin + ((end - begin) * k) / 20);
+    return times.some((time) => Math.abs(this.worlds.reading(time)?.value ?? 0) < NEAR_ZERO);
+  }
+
+  sentence({ why, ...scene }) {
+    return sentenceOf({ ...scene, ...this.seen, alike: why, moved: this.moved });
   }
 }
 
@@ -333,23 +310,4 @@ function ticksOf(lab) {
   return [box("rests", "car", "rests"), box("size", "its", "size"), ...speeds];
 }
 
-/** Time from which on every estimate that there is lies within the tolerance. */
-function foundAt({ error }, { time, tolerance }) {
-  const late = error.findLastIndex((value) => value > tolerance) + 1;
-  const first = error.findIndex((value, k) => k >= late && !Number.isNaN(value));
-  return first < 0 ? Infinity : time[first];
-}
-
-/** Gaps without the moments between them. */
-function joined(gaps) {
-  const found = [];
-  for (const [begin, end, why] of gaps) {
-    const last = found.at(-1);
-    if (last && last[2] === why && begin - last[1] < TORN) last[1] = end;
-    else if (end - begin > TORN / 2) found.push([begin, end, why]);
-  }
-  return found;
-}
-
 const TIMES = { [HALF]: "half", [TWICE]: "twice" };
-/** Speeds and lengths as they are written. */
