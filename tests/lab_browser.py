@@ -215,7 +215,9 @@ def assert_equals_python(shown, tolerance=1e-9):
         if "error" in shown["drawn"]:
             drawn = {line["name"]: as_array(line["values"]) for line in shown["drawn"]["error"]}
             error = 100 * np.where(np.isfinite(run.relative_error), run.relative_error, np.nan)
-            there = drawn["estimate" if len(runs) == 1 else name] if name in drawn or len(runs) == 1 else drawn["estimate"]
+            there = (
+                drawn["estimate" if len(runs) == 1 else name] if name in drawn or len(runs) == 1 else drawn["estimate"]
+            )
             np.testing.assert_allclose(there, error, rtol=1e-6, atol=2000 * tolerance)
 
 

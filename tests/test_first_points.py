@@ -1,4 +1,4 @@
-"""The first screen of many points: marks are dragged and hidden, the estimate starts elsewhere, a copy stays unseen."""
+"""The screen of many points: marks are dragged and hidden, the estimate starts elsewhere, a copy stays unseen."""
 
 import numpy as np
 import pytest
@@ -10,11 +10,11 @@ from percept_obs.labs import points_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-SEEN = """() => { const [{ first, settings, shown }] = window.perceptObsLabs;
-    const { places, found, copy, inWorld, foundInWorld, copyInWorld, hidden, off } = first.seen;
+SEEN = """() => { const [{ screen, settings, shown }] = window.perceptObsLabs;
+    const { places, found, copy, inWorld, foundInWorld, copyInWorld, hidden, off } = screen.seen;
     return { places, found, copy, inWorld, foundInWorld, copyInWorld, hidden, off, settings,
         errors: shown.errors.map((error) => Array.from(error)) }; }"""
-SHOW = "(time) => { const [lab] = window.perceptObsLabs; lab.first.clock.pause(); lab.point(time); lab.paint(); }"
+SHOW = "(time) => { const [lab] = window.perceptObsLabs; lab.screen.clock.pause(); lab.point(time); lab.paint(); }"
 
 
 @pytest.fixture
@@ -53,8 +53,8 @@ def images(places):
 LATE = """() => { const [lab] = window.perceptObsLabs;
     const { points, hidden } = lab.settings;
     lab.change({ points: points.slice(0, 1), hidden: hidden.slice(0, 1) }, true);
-    lab.first.aim(0, [0.1, 0.1]);  // of three marks, which are still drawn
-    lab.first.hide(2);
+    lab.screen.aim(0, [0.1, 0.1]);  // of three marks, which are still drawn
+    lab.screen.hide(2);
     return [lab.settings.points.length, lab.settings.hidden.length]; }"""
 
 
@@ -68,8 +68,8 @@ def test_a_mark_is_moved_at_the_depth_that_it_has_now_and_the_others_stay(page, 
     page.evaluate(SHOW, time)
     before = seen(page)
     picture = page.locator(".view.image").bounding_box()
-    inwards = 30 if middle(page, f"first mark {mark + 1}")[0] < picture["x"] + picture["width"] / 2 else -30
-    moved = drag(page, f"first mark {mark + 1}", inwards, 20)
+    inwards = 30 if middle(page, f"mark {mark + 1}")[0] < picture["x"] + picture["width"] / 2 else -30
+    moved = drag(page, f"mark {mark + 1}", inwards, 20)
     np.testing.assert_allclose(moved, [inwards, 20], atol=1.5)  # under the finger
     after = seen(page)
     assert after["places"][mark][2] == pytest.approx(before["places"][mark][2])
@@ -79,13 +79,13 @@ def test_a_mark_is_moved_at_the_depth_that_it_has_now_and_the_others_stay(page, 
 
 def test_a_mark_that_is_pressed_is_hidden_from_now_on_and_shown_again(page):
     page.evaluate(SHOW, 4.0)
-    page.click(control("first mark 2"))
+    page.click(control("mark 2"))
     after = seen(page)
     assert after["hidden"] == [False, True, False]
     assert after["settings"]["hidden"][1] == pytest.approx([4.0, 11.0])
     assert after["settings"]["hidden"][0] is None
     page.evaluate(SHOW, 6.0)
-    page.focus(control("first mark 2"))
+    page.focus(control("mark 2"))
     page.keyboard.press("Enter")
     assert seen(page)["settings"]["hidden"][1] == pytest.approx([4.0, 6.0])
     page.evaluate(SHOW, 10.0)
@@ -96,7 +96,7 @@ def test_a_mark_that_is_pressed_is_hidden_from_now_on_and_shown_again(page):
 def test_the_estimate_starts_where_it_is_dragged_along_its_error(page):
     page.evaluate(SHOW, 0.0)
     before = seen(page)
-    drag(page, "first estimate", 0, -12)
+    drag(page, "estimate", 0, -12)
     after = seen(page)
     assert after["settings"]["error"] < before["settings"]["error"]
     ways = [np.subtract(x["foundInWorld"][0], x["inWorld"][0]) / x["settings"]["error"] for x in (before, after)]
@@ -106,21 +106,21 @@ def test_the_estimate_starts_where_it_is_dragged_along_its_error(page):
 def test_a_copy_that_is_dragged_moves_no_image_at_any_time(page):
     asked(page, "travel")
     before = seen(page)
-    moved = drag(page, "first copy", 0, 30)
+    moved = drag(page, "copy", 0, 30)
     assert moved[1] > 15
     for time in (0.0, 4.1, 10.0):
         page.evaluate(SHOW, time)
         after = seen(page)
         np.testing.assert_allclose(images(after["copy"]), images(after["places"]), atol=1e-6)
     assert np.abs(np.subtract(after["copyInWorld"], before["copyInWorld"])).max() > 0.3
-    page.focus(control("first copy"))
+    page.focus(control("copy code"))
     page.keyboard.press("ArrowUp")
     assert np.abs(np.subtract(seen(page)["copyInWorld"], after["copyInWorld"])).max() > 0.1
 
 
 def test_a_copy_of_what_is_hidden_moves_freely_and_what_is_seen_stays(page):
     asked(page, "one")
-    moved = drag(page, "first copy", -20, 15)
+    moved = drag(page, "copy", -20, 15)
     np.testing.assert_allclose(moved, [-20, 15], atol=1.5)
     after = seen(page)
     np.testing.assert_allclose(after["copyInWorld"][0], after["inWorld"][0], atol=1e-6)
@@ -128,7 +128,7 @@ def test_a_copy_of_what_is_hidden_moves_freely_and_what_is_seen_stays(page):
 
 def test_there_is_no_copy_where_everything_is_seen_and_the_camera_travels(page):
     assert seen(page)["copy"] is None
-    page.locator(control("first travel")).fill("0")
+    page.locator(control("travel")).fill("0")
     assert seen(page)["copy"] is not None
     assert page.inner_text(".says").startswith("Still")
 
@@ -168,5 +168,5 @@ def test_the_world_rests_while_the_camera_travels(page):
 def test_any_other_settings_are_shown_as_well(settings, browser):
     with first_screen(browser, points_lab(duration=4.0, **settings)) as page:
         at_the_end(page)
-        assert page.evaluate("() => [...window.perceptObsLabs][0].first.views.every(({ texts }) => texts.length > 0)")
+        assert page.evaluate("() => [...window.perceptObsLabs][0].screen.views.slice(0, 3).every(({ texts }) => texts.length > 0)")
         assert seen(page)["copy"] is None

@@ -1,4 +1,4 @@
-"""The first screen of the structure lab: worlds that make one film, ticks that are settings, hands that move both."""
+"""The screen of the structure lab: worlds that make one film, ticks that are settings, hands that move both."""
 
 import numpy as np
 import pytest
@@ -10,15 +10,15 @@ from percept_obs.labs import structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-SEEN = """() => { const [{ first, settings, shown }] = window.perceptObsLabs;
-    const { seen, worlds, size, share, spoken } = first; const { now } = first.scene;
+SEEN = """() => { const [{ screen, settings, shown }] = window.perceptObsLabs;
+    const { seen, worlds, size, share, spoken } = screen; const { now } = screen.scene;
     const world = (each) => ({ ...worlds.places(each, now), image: worlds.image(each, now) });
     const half = { size: 0.5, share: null }; const true_ = { size: 1, share: null };
     return { unknown: settings.unknown, v_c: settings.v_c, refusal: shown.refusal, spoken, size, share, why: seen.why,
         ratio: Number.isFinite(seen.ratio) ? seen.ratio : null, free: seen.free, settings,
         ratios: seen.ratios && Array.from(seen.ratios, (v) => Number.isFinite(v) ? v : null),
         different: worlds.difference({ size, share: null }), true: world(true_), half: world(half) }; }"""
-TIME = "(time) => { const [lab] = window.perceptObsLabs; lab.first.clock.put(time); lab.paint(); }"
+TIME = "(time) => { const [lab] = window.perceptObsLabs; lab.screen.clock.put(time); lab.paint(); }"
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def page(browser):
 def ticked(page, *names):
     """Tick boxes, and show what then is seen at the end."""
     for name in names:
-        page.click(control(f"first {name}"))
+        page.click(control(f"{name}"))
     page.wait_for_function(DRAWN)
     at_the_end(page)
     return page.evaluate(SEEN)
@@ -101,13 +101,13 @@ def test_all_worlds_make_one_film_and_python_records_it_for_each(page):
 
 def test_a_hand_scales_a_world_and_the_film_stands_still(page):
     before = page.evaluate(SEEN)
-    let_go, stands = dragged(page, "first world", 24, -31)  # along the line of all sizes
+    let_go, stands = dragged(page, "world", 24, -31)  # along the line of all sizes
     after = page.evaluate(SEEN)
     assert stands == pytest.approx(let_go, abs=4)
     assert after["size"] > before["size"] + 0.1
     assert after["different"] < 1e-12
     assert after["settings"] == before["settings"]
-    page.focus(control("first world"))
+    page.focus(control("world"))
     page.keyboard.press("ArrowDown")
     page.wait_for_function(DRAWN)
     assert page.evaluate(SEEN)["size"] < after["size"]
@@ -119,7 +119,7 @@ def test_a_hand_scales_a_world_and_the_film_stands_still(page):
 def test_a_hand_lets_the_camera_have_come_elsewhere(page):
     ticked(page, "ahead")
     before = page.evaluate(SEEN)
-    let_go, stands = dragged(page, "first camera", 20, 25)
+    let_go, stands = dragged(page, "camera", 20, 25)
     after = page.evaluate(SEEN)
     assert stands == pytest.approx(let_go, abs=1.5)
     assert after["v_c"][0] > before["v_c"][0]
@@ -139,16 +139,16 @@ def test_nothing_is_found_while_the_known_speed_passes_zero(page):
         page.evaluate(TIME, time)
         seen = page.evaluate(SEEN)
         assert (seen["ratio"] is not None) == there, time
-        texts = page.evaluate("() => [...window.perceptObsLabs][0].first.world.texts.map(({ text }) => text)")
+        texts = page.evaluate("() => [...window.perceptObsLabs][0].screen.world.texts.map(({ text }) => text)")
         assert any(text.startswith("estimate") for text in texts) == there, time
-        charted = page.evaluate("() => [...window.perceptObsLabs][0].first.chart.texts.map(({ text }) => text)")
+        charted = page.evaluate("() => [...window.perceptObsLabs][0].screen.chart.texts.map(({ text }) => text)")
         assert any(text.startswith("found") for text in charted) == there, time
 
 
 def test_the_future_of_an_estimate_is_not_given_away(page):
-    page.click(control("first ahead"))
+    page.click(control("ahead"))
     page.wait_for_function(
-        "() => { const [lab] = window.perceptObsLabs; return !lab.late && lab.first.clock.playing; }"
+        "() => { const [lab] = window.perceptObsLabs; return !lab.late && lab.screen.clock.playing; }"
     )
-    texts = page.evaluate("() => [...window.perceptObsLabs][0].first.chart.texts.map(({ text }) => text)")
+    texts = page.evaluate("() => [...window.perceptObsLabs][0].screen.chart.texts.map(({ text }) => text)")
     assert not any(text.startswith("found") for text in texts)

@@ -104,10 +104,10 @@ def test_what_is_no_film_of_tracks_is_refused():
 
 UNDER = """async () => {
     const [lab] = window.perceptObsLabs;
-    const { film, image, clock } = lab.first;
+    const { film, image, clock } = lab.screen;
     const { time } = film.films[0];
     lab.paint();
-    const { seen } = lab.first;
+    const { seen } = lab.screen;
     const off = (each) => Math.abs(each - seen.recorded.begin - clock.present());
     const key = `0 ${time.reduce((best, each, k) => (off(each) < off(time[best]) ? k : best), 0)}`;
     for (let tries = 0; film.last !== key && tries < 200; tries++) {
@@ -123,7 +123,7 @@ UNDER = """async () => {
     return { shown: film.last === key, above: y < image.height / 2, inside, outside, texts: image.texts };
 }"""
 """Colours of the picture at the track's mark and beside it, once the frame of the time is there, and its texts."""
-POINTED = "(time) => { const [lab] = window.perceptObsLabs; lab.first.clock.put(time); }"
+POINTED = "(time) => { const [lab] = window.perceptObsLabs; lab.screen.clock.put(time); }"
 NOW = "() => { const [lab] = window.perceptObsLabs; return [lab.settings.scenario, lab.state.cursor]; }"
 ESTIMATE = "() => Array.from([...window.perceptObsLabs][0].shown.runs[0].estimate)"
 SIZES = [(1280, 800), (390, 800)]
@@ -184,7 +184,7 @@ def test_the_film_stands_under_the_track_while_one_scrubs_and_metres_at_the_poin
     assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
     run = lab.run()["extended_kalman"]
     np.testing.assert_allclose(np.reshape(page.evaluate(ESTIMATE), (-1, 3)), run.estimate, atol=1e-9)
-    pad = page.locator(".first-screen .scrub").bounding_box()
+    pad = page.locator(".time .scrub").bounding_box()
     for part in (0.2, 0.5, 0.8):
         page.mouse.click(pad["x"] + part * pad["width"], pad["y"] + 30)
         found = page.evaluate(UNDER)
@@ -210,7 +210,7 @@ def test_another_track_is_chosen_by_its_dot_or_by_keys_at_the_same_frame(page_of
     page = page_of(observer_lab(film()))
     page.evaluate(POINTED, 2.0)
     page.evaluate(STILL)
-    x, y = page.evaluate("() => [...window.perceptObsLabs][0].first.seen.tracks[0].at")
+    x, y = page.evaluate("() => [...window.perceptObsLabs][0].screen.seen.tracks[0].at")
     box = page.locator(".view.image").bounding_box()
     page.mouse.click(box["x"] + x, box["y"] + y)
     page.wait_for_function(DRAWN)
@@ -220,7 +220,7 @@ def test_another_track_is_chosen_by_its_dot_or_by_keys_at_the_same_frame(page_of
     assert found["shown"]
     assert any(re.fullmatch(r"triangulation 0\.\d\d m", each["text"]) for each in found["texts"])
     assert "triangulation" in page.inner_text(".says")
-    page.focus(control("first track"))
+    page.focus(control("track"))
     page.keyboard.press("ArrowDown")
     page.wait_for_function(DRAWN)
     assert page.evaluate(NOW) == ["board corner 7", pytest.approx(2.0)]

@@ -209,14 +209,14 @@ def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, fol
     open_notebook(page, "00_start.ipynb")
     run_all(page)
     rested(page)
-    page.locator(control("first play")).scroll_into_view_if_needed()
+    page.locator(control("play")).scroll_into_view_if_needed()
     page.wait_for_function(PLAYED)
     assert page.inner_text(".says").startswith("Found: ")
     assert page.evaluate(SETTLED) == pytest.approx(2.25)
 
-    page.mouse.move(*centre(page, control("first foe")))
+    page.mouse.move(*centre(page, control("foe")))
     page.mouse.down()
-    page.mouse.move(*centre(page, control("first point")), steps=5)
+    page.mouse.move(*centre(page, control("point")), steps=5)
     page.mouse.up()
     rested(page)
     assert page.evaluate(SETTLED) == np.inf
@@ -226,16 +226,16 @@ def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, fol
     page.click(control("again"))
     rested(page)
     for key, seconds in (("Home", 2.55), ("End", np.inf)):  # y1, y2
-        page.locator(control("first outputs")).press(key)
+        page.locator(control("outputs")).press(key)
         rested(page)
         assert page.evaluate(SETTLED) == pytest.approx(seconds)
 
     page.click(control("again"))
-    page.fill(control("first gain"), "1.48")
+    page.fill(control("gain"), "1.48")
     rested(page)
     assert page.evaluate(f"() => {FIRST}.settings.gains.identifier_based.gain") == 30
     assert page.evaluate(SETTLED) == pytest.approx(0.80)
-    page.fill(control("first noise"), "0.0025")
+    page.fill(control("noise size"), "0.0025")
     rested(page)
     assert page.evaluate(SETTLED) > 1.5
 

@@ -269,18 +269,19 @@ test("a question and its answer are steps, and the way back leads to the setting
 test("what is looked at is no part of the settings: it is a step back, and computes nothing again", async () => {
   const { lab, widget } = await opened();
   const { settings } = lab;
-  lab.look({ more: "charts" });
+  lab.unfold("charts");
+  lab.look({ charts: ["error"] });
   lab.look({ sight: [0.2, 0.4] });
   frame(300);
   await lab.settle();
   assert.equal(lab.engine.runs, 1);
   assert.equal(lab.settings, settings);
-  assert.deepEqual(widget.get("view"), { ...VIEW, more: "charts", sight: [0.2, 0.4] });
+  assert.deepEqual(widget.get("view"), { ...VIEW, more: "charts", charts: ["error"], sight: [0.2, 0.4] });
   assert.deepEqual(lab.span, { low: 0.2, high: 0.4 });
   lab.undo();
-  assert.deepEqual([lab.state.view.more, lab.state.view.sight], ["charts", null]);
+  assert.deepEqual([lab.state.view.charts, lab.state.view.sight], [["error"], null]);
   lab.undo();
-  assert.equal(lab.state.view.more, "");
+  assert.deepEqual(lab.state.view, { ...VIEW, more: "charts" }, "the drawer stays open");
   lab.look({ sight: [0.2, 0.4] });
   lab.change({ duration: 3 }, true);
   assert.equal(lab.state.view.sight, null, "another run is shown whole");

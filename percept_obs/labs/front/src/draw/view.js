@@ -1,7 +1,7 @@
 // A picture of the first screen.  What is written in it never overlaps and is never cut: labels look for a free place.
 
 import { element } from "./dom.js";
-import { LabelledPicture, RIM } from "./labels.js";
+import { LabelledPicture, meet, RIM } from "./labels.js";
 import { arrowMark, disc, ring, stroke } from "./marks.js";
 
 /** Milliseconds in which a view comes most of the way to where it should be. */
@@ -119,10 +119,16 @@ export class View extends LabelledPicture {
   drawNote({ x, y, text }) {
     const { context: pen, width, theme } = this;
     const half = pen.measureText(text).width / 2 + 9;
-    const side = y + 46 > this.lowest ? -1 : 1;
-    const [top, middle] = [y + 6 * side, y + 28 * side];
-    const cx = Math.min(Math.max(x, half + RIM + 1), width - half - RIM - 1);
-    const box = [cx - half, middle - 11, cx + half, middle + 11];
+    // Below the place or above it, or to a side, where it covers nothing that is written.
+    const places = [1, -1].flatMap((side) => [0, -0.7, 0.7].map((aside) => {
+      const middle = y + 28 * side;
+      const cx = Math.min(Math.max(x + aside * half, half + RIM + 1), width - half - RIM - 1);
+      return { side, middle, cx, box: [cx - half, middle - 11, cx + half, middle + 11] };
+    }));
+    const inside = places.filter(({ middle }) => middle > 18 && middle + 18 < this.lowest);
+    const free = inside.find(({ box }) => !this.texts.some((other) => meet(box, other.box)));
+    const { side, middle, cx, box } = free ?? inside[0] ?? places[0];
+    const top = y + 6 * side;
     pen.fillStyle = theme.ink;
     pen.beginPath();
     for (const [u, v] of [[x, top], [x - 7, middle], [x + 7, middle]]) pen.lineTo(u, v);

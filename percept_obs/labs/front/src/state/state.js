@@ -111,7 +111,9 @@ export class State {
   go(from, to) {
     if (!from.length) return false;
     to.push(this.now);
-    this.now = from.pop();
+    const { more } = this.view;
+    const now = /** @type {Moment} */ (from.pop());
+    this.now = now.view.more === more ? now : { ...now, view: { ...now.view, more } };
     this.held = null;
     return true;
   }

@@ -35,14 +35,14 @@ export class Drawer {
     this.groups = [...groups, ...this.own()];
     this.folds = this.groups.map(({ name, title, inside }) => {
       const summary = element("summary", { "data-control": `group ${name}` }, title);
-      // The view says which is open, so that it can be undone, sent and saved.
+      // The view says which is open, so that it can be sent and saved.
       summary.addEventListener("click", (event) => {
         event.preventDefault();
-        lab.look({ more: lab.state.view.more === name ? FOLDED : name });
+        lab.unfold(lab.state.view.more === name ? FOLDED : name);
       });
       return element("details", { class: `group group-${name}` }, summary, ...inside);
     });
-    this.more = button("More", () => lab.look({ more: lab.state.view.more ? "" : this.groups[0].name }), {
+    this.more = button("More", () => lab.unfold(lab.state.view.more ? "" : this.groups[0].name), {
       ...{ class: "link", "data-control": "more", "aria-expanded": "false" },
     });
     this.body = element(
@@ -58,7 +58,7 @@ export class Drawer {
   actions() {
     const { lab, history, keep } = this;
     const copy = button("Copy code", () => this.copyCode(), {
-      ...{ "data-control": "copy", title: "Python code of this run" },
+      ...{ "data-control": "copy code", title: "Python code of this run" },
     });
     const link = button("Link", () => this.copyLink(), {
       ...{ "data-control": "copy link", title: "The address of this page, with the settings of this lab" },

@@ -197,6 +197,12 @@ export class Lab extends LabBase {
     this.looked();
   }
 
+  /** Open a group of the drawer; no step, for the buttons that lead back stand in it. */
+  unfold(more) {
+    this.state.amend({ view: { ...this.state.view, more } });
+    this.looked();
+  }
+
   looked() {
     this.choices += 1;
     this.spoken = 0;
