@@ -113,7 +113,7 @@ def test_a_copy_that_is_dragged_moves_no_image_at_any_time(page):
         after = seen(page)
         np.testing.assert_allclose(images(after["copy"]), images(after["places"]), atol=1e-6)
     assert np.abs(np.subtract(after["copyInWorld"], before["copyInWorld"])).max() > 0.3
-    page.focus(control("copy code"))
+    page.focus(control("copy"))
     page.keyboard.press("ArrowUp")
     assert np.abs(np.subtract(seen(page)["copyInWorld"], after["copyInWorld"])).max() > 0.1
 
@@ -168,5 +168,7 @@ def test_the_world_rests_while_the_camera_travels(page):
 def test_any_other_settings_are_shown_as_well(settings, browser):
     with first_screen(browser, points_lab(duration=4.0, **settings)) as page:
         at_the_end(page)
-        assert page.evaluate("() => [...window.perceptObsLabs][0].screen.views.slice(0, 3).every(({ texts }) => texts.length > 0)")
+        assert page.evaluate(
+            "() => [...window.perceptObsLabs][0].screen.views.slice(0, 3).every(({ texts }) => texts.length > 0)"
+        )
         assert seen(page)["copy"] is None

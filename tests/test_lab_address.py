@@ -7,7 +7,7 @@ import pytest
 from hostile_messages import messages
 from javascript import run_script
 from lab_alone import DRAWN
-from lab_browser import UNFOLD, control
+from lab_browser import RESET, UNFOLD, control
 from lab_settings import FRONT, random_settings, whole_model
 from points_settings import random_settings as random_points
 from sample_sizes import sampled
@@ -67,9 +67,14 @@ def test_random_settings_go_into_an_address_and_back_unchanged(node):
         states += [(name, settings) for settings in found]
     assert len({json.dumps(state) for state in states}) > 0.8 * len(states)
     assert sum(settings["kept"] is not None for _, settings in states) > 0.2 * len(states)
-    rounds = in_node(node, models, states)["rounds"]
+    rng = np.random.default_rng(5)
+    seen = {"side": [True, False], "sight": [None, [0.5, 1.25]], "more": ["", "charts"], "chosen": ["", "sliding_mode"]}
+    looked = [{key: values[rng.integers(2)] for key, values in seen.items()} for _ in states]
+    tasks = [(*state, look) for state, look in zip(states, looked, strict=True)]
+    rounds = in_node(node, models, tasks)["rounds"]
     for (name, settings), told in zip(states, rounds, strict=True):
         assert told["back"] == settings, (name, told["text"])
+        assert told["seen"] == told["view"], (name, told["text"])
         assert len(told["text"]) < 10_000
 
 
@@ -105,7 +110,7 @@ OF_OBSERVER = [
     *(f"surface={value}" for value in [*SCRIPTS, "toString", "Pinhole", "pinhole,plane", "-"]),
     *(f"motion={value}" for value in [*SCRIPTS, "b1%20=%20t", "b1%20%3D%20sin%28t%29", "b" * 401, "(" * 19_000]),
     *("", ";", "seed", "=3", f"{B};{B}", "noise=uniform,0.1", "noise.kind=pink", "normal=0,1,0", "period=0"),
-    "pictures=",
+    *("view.charts=everything", "view.more=" + "x" * 41, "view.side=yes", "view.sight=1", "view.sight=a,b", "view=1"),
     *("believed.b=1,2,3", "believed=1", "believed=-;believed.b=1,2,3", "kept=1", "kept.seed=x", "kept.outputs="),
     *("gains.extended_kalman.noise_variance=-1", "gains.identifier_based.reset_ratio=0.5", "gains.identifier_based=1"),
     *("gains.nobody.gain=1", "gains.identifier_based.gain=x", "switches.sliding_mode=soft", "scenario=my_recording"),
@@ -157,7 +162,7 @@ def test_a_link_is_short_and_readable_and_an_anchor_of_the_page_is_none(node, mo
     assert answer["rounds"][0]["text"] == link
     *anchors, last = answer["followed"]
     assert anchors == [{"notice": "", "visited": None}] * 4
-    assert last == {"notice": "", "visited": settings}
+    assert last == {"notice": "", "visited": settings, "view": lab.looks.opening}
 
 
 SETTINGS = "(which) => [...window.perceptObsLabs][which].settings"
@@ -186,7 +191,6 @@ def page(browser, tmp_path):
 
 
 def of_one(lab):
-    lab.face = "workbench"
     return page_of(lab.get_state(), "A lab")
 
 
@@ -290,13 +294,13 @@ def test_velocities_in_samples_are_saved_chosen_linked_and_undone(page):
         rested_at(shown, 0, "velocities", velocities)
     shown.click(control("corollary 1"))
     rested_at(shown, 0, "velocities", "set")
-    shown.click(control("reset"))
+    shown.evaluate(RESET)
     rested_at(shown, 0, "velocities", "samples")
     assert shown.evaluate(SETTINGS, 0) == lab.settings
     rested_at(page(text, "#" + link), 0, "velocities", "samples")
     for there, told, reason in (
         (text, "velocities=samples;duration=3", "The velocities are sampled up to 2 s only"),
-        (text, "velocities=samples;motion=t", "The velocities are those of your samples, and none can be typed"),
+        (text, "velocities=samples;motion=t", "The velocities are those of your samples, and none can be given"),
         (of_one(structure_lab()), link.partition(";")[2], 'is "samples"; it must be one of set'),
     ):
         shown = page(there, f"#structure=1;{told}")
@@ -313,11 +317,11 @@ def test_of_points_a_run_ends_with_the_samples_of_its_own_motion(page):
     duration = shown.locator(control("duration number"))
     duration.fill("5")
     assert duration.get_attribute("aria-invalid") == "true"
-    shown.check(control("state independent"))
+    shown.select_option(control("state"), "independent")
     rested_at(shown, 0, "state", "independent")
     duration.fill("5")
     rested_at(shown, 0, "duration", 5)
-    shown.check(control("state own"))
+    shown.select_option(control("state"), "own")
     rested_at(shown, 0, "duration", 4)
     assert shown.inner_text(".notice") == "The samples of your motion end at 4 s."
 

@@ -43,14 +43,14 @@ BLOCKED = """(changes) => new Promise((resolve) => {
 MOVE = """async (count) => {
     const [lab] = window.perceptObsLabs;
     for (let k = 0; k < count; k++) {
-        lab.moveFoe([1.6 + 0.1 * Math.sin(k / 9), 0.8]);
+        lab.screen.steer([0.1 + 0.05 * Math.sin(k / 9), 0]);
         await new Promise((resolve) => requestAnimationFrame(resolve));
     }
 }"""
-PLACE = "() => [...window.perceptObsLabs][0].planes[0].handles[0].at"
+PLACE = "() => { const [{ screen }] = window.perceptObsLabs; return screen.handles.find(({ at }) => at).at; }"
 KEYS_FASTER_THAN_PICTURES = """() => {
     const [lab] = window.perceptObsLabs;
-    const { node } = lab.planes[0].handles[0];
+    const { node } = lab.screen.handles.find(({ at }) => at);
     for (const key of ["ArrowRight", "ArrowRight", "ArrowUp"]) {
         node.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
         lab.paint();  // a picture of the settings before: nothing comes from the worker meanwhile
@@ -66,12 +66,12 @@ PLAY = """(seconds) => new Promise((resolve) => {
     play.click();
     const began = performance.now();
     // At the end it begins again, for as long as it is to be played.
-    const again = setInterval(() => { if (!lab.view.playing()) play.click(); }, 20);
+    const again = setInterval(() => { if (!lab.screen.clock.playing) play.click(); }, 20);
     requestAnimationFrame(count);
     setTimeout(() => {
         playing = false;
         clearInterval(again);
-        if (lab.view.playing()) play.click();
+        if (lab.screen.clock.playing) play.click();
         resolve({ frames, pictures: lab.pictures - pictures, seconds: (performance.now() - began) / 1000 });
     }, 1000 * seconds);
 })"""

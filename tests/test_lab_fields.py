@@ -2,7 +2,7 @@
 
 import pytest
 from lab_alone import DRAWN
-from lab_browser import UNFOLD, control
+from lab_browser import RESET, UNFOLD, control
 
 from percept_obs.labs import observer_lab, structure_lab
 
@@ -19,27 +19,26 @@ def test_a_number_out_of_range_is_told_what_the_field_takes(show):
     page = show(observer_lab("ma2005_eq35"), viewport=SIZE)
     page.evaluate(UNFOLD)
     for name, text, told in (
-        ("noise size number", "7", "a number from 0 to 1"),
+        ("period number", "7", "a number from 0.001 to 1"),
         ("seed number", "1.5", "a whole number"),
-        ("identifier_based gain number", "-3", "G > 0"),
+        ("identifier_based noise_variance number", "-3", ">= 0"),
         ("A a11", "5000", "from -1000 to 1000"),
     ):
         page.fill(control(name), text)
         page.keyboard.press("Tab")
         assert told in page.inner_text(".range:not([hidden])"), name
         assert page.input_value(control(name)) != text
-        page.click(control("reset"))
+        page.evaluate(RESET)
         drawn(page)
-        page.fill(control("identifier_based gain number"), "9")
         page.fill(control(name), "0.5" if name != "seed number" else "3")
         assert page.locator(".range:not([hidden])").count() == 0
-        page.click(control("reset"))
+        page.evaluate(RESET)
         drawn(page)
 
 
 def test_a_press_that_changes_the_true_world_says_so(show):
     page = show(structure_lab(duration=3.0, period=0.01, step=0.01), viewport=SIZE)
-    page.click(control("topic cases"))
+    page.click(control("more"))
     page.click(control("corollary 3"))
     drawn(page)
     told = page.inner_text(".notice")
@@ -52,8 +51,8 @@ def test_a_press_that_changes_the_true_world_says_so(show):
 
 def test_while_python_computes_nothing_is_red(show):
     page = show(observer_lab("ma2005_eq35"), viewport=SIZE)
-    page.fill(control("noise size number"), "0.001")
+    page.fill(control("noise size"), "0.001")
     page.wait_for_selector(".silence:not([hidden])")
     assert "has not answered yet" in page.inner_text(".silence")
     colour = "(s) => getComputedStyle(document.querySelector(s)).color"
-    assert page.evaluate(colour, ".silence") == page.evaluate(colour, ".reading")
+    assert page.evaluate(colour, ".silence") == page.evaluate(colour, "figcaption")

@@ -224,4 +224,4 @@ def test_another_track_is_chosen_by_its_dot_or_by_keys_at_the_same_frame(page_of
     page.keyboard.press("ArrowDown")
     page.wait_for_function(DRAWN)
     assert page.evaluate(NOW) == ["board corner 7", pytest.approx(2.0)]
-    assert page.locator(".first-screen .handle:visible").count() == 0
+    assert page.locator(".views .handle:visible").count() == 0

@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 import sympy as sp
-from hostile_messages import TYPED
 from lab_settings import as_array, copied_runs, run_in_node, whole_model
 from refusals import refuses
 from test_lab_engine import assert_same_run
@@ -15,7 +14,6 @@ from test_points_lab import assert_same_run as assert_same_points
 from percept_obs import Camera, Scenario, Uniform, affine, extended_kalman, ibo, record, rigid
 from percept_obs.compile.equations import Equations
 from percept_obs.labs import observer_lab, points_lab, structure_lab
-from percept_obs.labs.shared.lab import MOST_READ, MOST_WRITTEN
 from percept_obs.labs.shared.samples import MOST_SAMPLES
 from percept_obs.labs.structure.lab import unknowns_of
 from percept_obs.observers import Observer
@@ -379,22 +377,6 @@ def test_of_points_a_motion_in_samples_agrees(node):
         assert copied.verdict() == run.verdict() == answer["summary"]["verdict"]
     lab.summary = {"serial": 1}
     assert lab.analysis["sentences"]
-
-
-@pytest.mark.parametrize("make", [observer_lab, structure_lab, points_lab])
-def test_whatever_the_page_asks_to_be_read_is_answered_and_never_run(make, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    lab = make()
-    before = lab.settings
-    for text in (*TYPED, *(f"b1 = {k}" for k in range(2 * MOST_WRITTEN)), "y" * (MOST_READ + 1)):
-        lab.set_state({"asked": text})
-        if text.strip() and len(text) <= MOST_READ:
-            answer = lab.written[text]
-            assert set(answer) == {"refusal", "position"} or "source" in answer
-    assert len(lab.written) <= MOST_WRITTEN
-    assert lab.settings == before
-    assert json.dumps(lab.written, allow_nan=False)
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.node

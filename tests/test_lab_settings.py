@@ -6,7 +6,6 @@ from lab_settings import KEYS, whole_model
 
 from percept_obs import Camera, Recording, Scenario, affine, ibo, record, scenarios, track
 from percept_obs.labs.observer.lab import observer_lab
-from percept_obs.labs.observer.settings import PICTURES
 from percept_obs.labs.observer.texts import BY_NAME, OF_THE_PINHOLE, SIZE, SURFACES, WAYS, form_of, key_of, system_of
 from percept_obs.recording.utias import UTIAS_CUT, load_utias
 from percept_obs.system.perspective import PerspectiveSystem
@@ -26,7 +25,6 @@ def test_the_model_is_complete_and_is_json(lab):
     assert set(model["surfaces"]) == set(SURFACES)
     assert set(model["observers"]) == set(BY_NAME)
     assert model["opening"] == observer_lab("ma2005_eq35").settings
-    assert model["pictures"] == list(PICTURES)
     choices = {name: system_of(name).output_choices for name in SURFACES}
     assert [key_of(name, outputs) for name in SURFACES for outputs in choices[name]] == KEYS
     assert list(model["forms"]) == [*KEYS, key_of("pinhole", SIZE)]

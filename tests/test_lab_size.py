@@ -41,7 +41,7 @@ def test_the_page_is_python(node, case):
 
 
 def test_what_the_page_has_not_of_the_size_is_said(node):
-    lab = observer_lab(outputs=list(SIZE), noise=NOISY, bound=["error"])
+    lab = observer_lab(outputs=list(SIZE), noise=NOISY)
     (answer,) = run_in_node(node, lab, [lab.settings])
     assert answer["bound"] is None
     with pytest.raises(ValueError, match="with the size"):

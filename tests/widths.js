@@ -83,8 +83,6 @@ async () => {
   measure();
 
   const stages = [...document.querySelectorAll(".percept-lab")];
-  const tabs = stages.flatMap((lab) => [...lab.querySelectorAll('[data-control^="tab "]')]);
-  for (const topic of stages.flatMap((lab) => [...lab.querySelectorAll("details")])) topic.open = true;
   const slides = window.Reveal?.getSlides() ?? [];
   if (slides.length) window.Reveal.configure({ transition: "none", backgroundTransition: "none" });
   for (const slide of slides) {
@@ -95,11 +93,20 @@ async () => {
   }
   await painted();
   look(document);
-  for (const tab of tabs.filter(isOpen)) {
-    tab.click();
+  // The drawer of a lab, each of its groups in turn.
+  for (const lab of stages) {
+    const more = lab.querySelector('[data-control="more"]');
+    if (!more || !isOpen(more)) continue;
+    more.click();
     await painted();
-    for (const lab of stages) look(lab);
-    measure();
+    for (const group of lab.querySelectorAll(".drawer summary")) {
+      if (!group.parentElement.open) group.click();
+      await painted();
+      look(lab.querySelector(".drawer"));
+      measure();
+    }
+    more.click();
+    await painted();
   }
 
   for (const drawer of closed) {
