@@ -33,11 +33,11 @@ READER = FRONT / "src/labs/desk/model/printed.js"
 bundle is built."""
 
 MODELS = FRONT / "tests/models.json"
-"""What Python hands to the labs' first screens as they open, for the tests of the page."""
+"""What Python hands to the labs as they open, for the tests of the page."""
 
 
 def models() -> str:
-    """What Python hands to the page as each lab with a first screen opens, without the schema, as JSON."""
+    """What Python hands to the page as each lab that draws runs opens, without the schema, as JSON."""
     labs = {"observer": observer_lab(), "points": points_lab(), "structure": structure_lab()}
     given = {
         name: {

@@ -66,17 +66,17 @@ class ObserverLab(Lab):
     ----------
     scenario : str, Scenario, Recording or Footage
         Opens the lab: the name of a scenario, or one of your own; without any argument it is a drive past a point.
-        A motion in expressions of time is typed into the lab; one that is sampled, or a function, is taken as samples
-        that stay as they are after the last one.  Of a film, such as one of
-        `percept_obs.film.read_film`, the lab offers up to 12 tracks, and opens with the longest
-        one with a truth, the film behind it, and an extended Kalman filter.
+        A motion in expressions of time becomes the setting `motion`; one that is sampled, or a function, is taken as
+        samples that stay as they are after the last one.  Of a film, such as one of `percept_obs.film.read_film`, the
+        lab offers up to 12 tracks, and opens with the longest one with a truth, the film behind it, and an extended
+        Kalman filter.
     recordings : mapping of names to recordings, optional
         Tracks of a real camera that can be chosen as well.
     observers : list, optional
         Names, and observers of your own: functions of a form such as `percept_obs.observers.family.family` makes, or
         an `Observer` of the one form that it is made for.
     frames : Frames, or mapping of names of recordings to Frames, optional
-        A film behind the track of the recording that it opens with, or of others, on the first screen.
+        A film behind the track of the recording that it opens with, or of others.
     surface : str or ImagingSurface, optional
         The name of an imaging surface, or one of your own, or a function that gives it.
     **settings
@@ -206,7 +206,7 @@ class ObserverLab(Lab):
             raise ValueError("a recording's motion varies and is measured; believed must be None with it")
 
     def _refuse_motion(self, settings: Settings) -> None:
-        """Raise a ValueError for a typed motion that cannot be read, is not finite, or has a scenario with its own."""
+        """Raise a ValueError for a motion over time that is not read or not finite, or beside that of a scenario."""
         if settings["motion"].strip():
             scenario = settings["scenario"]
             if scenario in self._recordings or scenario in self._tables:
@@ -316,7 +316,7 @@ def _numbers(settings: Settings) -> np.ndarray:
 
 @kept_by_reads
 def _motion(settings: Settings) -> Motion:
-    """The motion of settings: constant, or as it was typed."""
+    """The motion of settings: constant, or as its expressions of time say."""
     if settings["motion"].strip():
         typed, numbers = read_motion(settings["motion"], BLOCKS), _numbers(settings)
         return replace(MOTION, signal=Signal(OverTime(partial(typed.rows, numbers=numbers), typed.breaks)))

@@ -33,7 +33,7 @@ OWN_SWITCH = MappingProxyType({name: ways[0] for name, ways in WAYS.items() if w
 
 MOTION = affine()
 BLOCKS = MappingProxyType({"A": MOTION.A, "b": MOTION.b})
-"""Blocks of a motion by the letters that may be typed."""
+"""Blocks of a motion by the letters that its expressions may name."""
 
 
 SIZE = ("y1", "y2", "s")

@@ -123,7 +123,7 @@ def sampled(motion: Motion, times: np.ndarray, unit: float = 1.0) -> Motion:
 
 
 def typed_text(motion: Motion) -> str:
-    """Text of a motion in expressions of time, as it may be typed; empty if there is none."""
+    """Text of a motion in expressions of time, as the setting takes it; empty if there is none."""
     if motion.parameters != (TIME,):
         return ""
     symbols = [symbol for block in BLOCKS.values() for symbol in block]

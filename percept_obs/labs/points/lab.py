@@ -115,7 +115,7 @@ class PointsLab(Lab):
         self.write_down(DRIVE)  # which questions are about, whatever the lab opens with
 
     def typed_for_the_page(self, text: str) -> Settings:
-        """Texts of a typed P, or of each state's coefficients under a typed motion."""
+        """Texts of a given P, or of each state's coefficients under a motion over time."""
         if gives_P(text):
             return weight_for_the_page(read_weight(text))
         typed = read_motion(text, BLOCKS)
@@ -128,7 +128,7 @@ class PointsLab(Lab):
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong.
 
-        Points are seen where `hidden` is missing, and P is typed where `weight` is missing.
+        Points are seen where `hidden` is missing, and `weight` is "typed" where P is given without it.
         """
         if isinstance(settings, Mapping):
             typed: Settings = {name: as_text(settings[name]) for name in ("P", "P0") if name in settings}
@@ -147,7 +147,7 @@ class PointsLab(Lab):
             if points != self._form.points:
                 raise ValueError(f"there are {points} points; it must be {self._form.points}, as in your own form")
             if settings["motion"].strip():
-                raise ValueError("motion is typed, but it must be empty with your own form, which has its own")
+                raise ValueError("motion is given, but it must be empty with your own form, which has its own")
             if is_sampled(self._form.motion):
                 refuse_longer(self._form.motion, settings["duration"])
         self._refuse_motion(settings)
@@ -160,7 +160,7 @@ class PointsLab(Lab):
         if not settings["motion"].strip():
             return
         if gives_P(settings["motion"]):
-            raise ValueError('motion gives P; choose weight="typed" and type it there')
+            raise ValueError('motion gives P; give it as P=..., which sets weight="typed"')
         moved = tuple(entry for vector in _manoeuvre(settings).velocities for entry in vector)
         function = vectorised((TIME,), moved)
         self.refuse_poles(settings, lambda times: np.stack(function(times), axis=-1))

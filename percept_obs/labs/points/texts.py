@@ -27,7 +27,7 @@ SURFACE = pinhole()
 
 _LETTERS = ("w_c", "v_c", "w_b")
 BLOCKS = MappingProxyType({name: sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True)) for name in _LETTERS})
-"""Vectors that may be typed: angular velocity and velocity of the camera, angular velocity of the body."""
+"""Vectors that may be given over time: angular velocity and velocity of the camera, angular velocity of the body."""
 
 
 def _own_motion(points: int, turning: Any, velocity: Any, _: Any = None) -> PointsForm:
@@ -42,7 +42,7 @@ STATES: Mapping[str, Callable[..., PointsForm]] = MappingProxyType(
 
 
 def form_of(state: str, points: int, manoeuvre: Manoeuvre, typed: Typed | None = None) -> PointsForm:
-    """The form of a state whose camera and body move by a manoeuvre, or as it was typed."""
+    """The form of a state whose camera and body move by a manoeuvre, or as expressions of time say."""
     moved = tuple(manoeuvre.velocities)
     return STATES[state](points, *(typed_velocities(typed, moved) if typed else moved))
 
@@ -88,7 +88,7 @@ def coefficients_for_the_page(state: str, moved: Vectors) -> str:
 
 
 def typed_velocities(typed: Typed, moved: Vectors) -> Vectors:
-    """Velocities of a manoeuvre, changed as it was typed."""
+    """Velocities of a manoeuvre, changed as expressions of time say."""
     base = dict(zip(typed.symbols, (e for vector in moved for e in vector), strict=True))
     entries = tuple(entry.xreplace(base) for entry in typed.expressions)
     return entries[:3], entries[3:6], entries[6:]

@@ -1,4 +1,4 @@
-"""A typed P of the lab of many points: a number or a diagonal, read like a derivation and never evaluated."""
+"""A given P of the lab of many points: a number or a diagonal, read like a derivation and never evaluated."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from percept_obs.system.signal import OverTime
 from percept_obs.validation import expression
 
 MOST_OF_P = 2000
-"""Largest number of characters of a typed P."""
+"""Largest number of characters of a given P."""
 
 SIZE = sp.Symbol("P", real=True)
-"""The number that the lab sets, which may stand in a typed P."""
+"""The number that the lab sets, which may stand in a given P."""
 
 FORMS = "a number or a diagonal [a, b, c]"
 LEAST, LARGEST = 1e-9, 1e9
 """Bounds of the entries of P."""
 
 TYPED_IN = {"typed": "P", "lyapunov": "P0", "riccati": "P0"}
-"""Setting in which P is typed, by the kind of P."""
+"""Setting in which P is given, by the kind of P."""
 
 Diagonal = tuple[sp.Expr, ...]
 """Entries of P in `TIME` and `SIZE`: one for all states, or three for each vector of three states."""
@@ -107,7 +107,7 @@ def _growing(size: float, final: float, duration: float, time: float) -> float:
 
 
 def refuse_P(settings: Settings) -> None:
-    """Raise a ValueError for a typed P that cannot be read, or is not positive; put ``P =`` before one without it."""
+    """Raise a ValueError for a given P that cannot be read, or is not positive; put ``P =`` before one without it."""
     name = TYPED_IN.get(settings["weight"])
     if name is None or not (settings[name].strip() or name == "P"):
         return

@@ -1,7 +1,7 @@
 """Base class of the labs: bundle and texts of the page, state in traitlets, errors that show, one lab a cell.
 
 To add a lab: a folder with a subclass of `Lab`, a `Schema` of its settings, and the texts that ``printing.py`` prints
-for its page.  Beside it a folder in ``front/src`` with a subclass of ``Lab``, named in ``front/src/main.js``.
+for its page.  Beside it a folder in ``front/src/labs`` with a subclass of ``Lab``, named in ``front/src/main.js``.
 """
 
 from __future__ import annotations
@@ -155,7 +155,7 @@ class Lab(anywidget.AnyWidget):
         """Raise a ValueError for settings that do not go together."""
 
     def refuse_poles(self, settings: Settings, numbers: Callable[[Array], Array]) -> None:
-        """Raise a ValueError for a typed motion that cannot be read, or is not finite; see `Typed.refuse_poles`."""
+        """Raise a ValueError for a motion over time that cannot be read, or is not finite; see `Typed.refuse_poles`."""
         try:
             typed = read_motion(settings["motion"], self.blocks)
         except ValueError as error:
@@ -163,13 +163,13 @@ class Lab(anywidget.AnyWidget):
         typed.refuse_poles(settings["duration"], numbers)
 
     def typed_for_the_page(self, text: str) -> Settings:
-        """Texts of a typed motion; a ValueError if it cannot be read."""
+        """Texts of a motion over time; a ValueError if it cannot be read."""
         if not self.blocks:
-            raise ValueError("no motion is typed in this lab")
+            raise ValueError("this lab takes no motion over time")
         return read_motion(text, self.blocks).for_the_page()
 
     def write_down(self, settings: Settings) -> None:
-        """Print the typed motions of settings for the page."""
+        """Print the motions over time of settings for the page."""
         kept = settings.get("kept") or {}
         for text in (each.get(name, "") for each in (settings, kept) for name in TYPED):
             if text.strip() and "source" not in self.written.get(text, {}):

@@ -27,7 +27,7 @@ class Kind:
     label: str = ""  # the page's words for it
     unit: str = ""
     about: str = ""  # its meaning, for the docstring of the lab
-    topic: str = ""  # the part of the panel that shows a number, unless the panel places it itself
+    topic: str = ""  # the group of the drawer that shows it, unless the lab's panel places it itself
 
     @property
     def expected(self) -> str:

@@ -1,4 +1,4 @@
-"""Motions that are typed as expressions of t: read like derivations, never evaluated, and printed for the page."""
+"""Motions as expressions of t, given in Python: read like derivations, never evaluated, and printed for the page."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from percept_obs.validation import expression
 
 MOST = 400
 LONGEST = 200.0
-"""Seconds up to which the page knows where a typed motion jumps."""
+"""Seconds up to which the page knows where a motion over time jumps."""
 INSTANTS = 501
-"""Number of times of a run at which a typed motion is checked."""
+"""Number of times of a run at which a motion over time is checked."""
 
 Blocks = Mapping[str, sp.ImmutableMatrix]
 """Vectors and matrices of symbols, by their letters."""
@@ -32,14 +32,14 @@ _IF = re.compile(r"([^,;=\[\]\n]*?)\bif\b([^,;\[\]\n]*?)\belse\b([^,;\[\]\n]*)")
 
 
 def typed_setting(example: str) -> Text:
-    """The setting of a typed motion."""
+    """The setting of a motion over time."""
     about = f"expressions of t for what varies, such as {example!r}; the numbers' letters may stand in them"
     return Text("", MOST, label="Over time", about=about)
 
 
 @dataclass(frozen=True)
 class Typed:
-    """A typed motion."""
+    """A motion over time, as it was read."""
 
     text: str
     symbols: tuple[sp.Symbol, ...]  # the numbers that a lab sets

@@ -270,7 +270,7 @@ def _made(make: Callable[[CanonicalForm], Observer], unknowns: StructureAndMotio
 
 
 def motion_of(settings: Settings, samples: Motion | None = None) -> Motion:
-    """The true motion: the samples, or else constant unless a velocity swings or is typed."""
+    """The true motion: the samples, or else constant unless a velocity swings or is given over time."""
     if samples:
         return samples
     typed = read_motion(settings["motion"], BLOCKS) if settings["motion"].strip() else None

@@ -32,7 +32,7 @@ _ROTATION, CAMERA, OBJECT = (MOTION.parameters[k : k + 3] for k in (0, 3, 6))
 BLOCKS = MappingProxyType(
     {letter: sp.ImmutableMatrix(block) for letter, block in (("w_c", _ROTATION), ("v_c", CAMERA), ("v_p", OBJECT))}
 )
-"""Blocks of a motion by the letters that may be typed."""
+"""Blocks of a motion by the letters that its expressions may name."""
 LARGEST = 3
 """Largest number of unknowns."""
 
