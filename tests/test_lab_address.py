@@ -110,7 +110,7 @@ OF_OBSERVER = [
     *(f"surface={value}" for value in [*SCRIPTS, "toString", "Pinhole", "pinhole,plane", "-"]),
     *(f"motion={value}" for value in [*SCRIPTS, "b1%20=%20t", "b1%20%3D%20sin%28t%29", "b" * 401, "(" * 19_000]),
     *("", ";", "seed", "=3", f"{B};{B}", "noise=uniform,0.1", "noise.kind=pink", "normal=0,1,0", "period=0"),
-    *("view.charts=everything", "view.more=" + "x" * 41, "view.side=yes", "view.sight=1", "view.sight=a,b", "view=1"),
+    *("look.charts=everything", "look.more=" + "x" * 41, "look.side=yes", "look.sight=1", "look.sight=a,b", "look=1"),
     *("believed.b=1,2,3", "believed=1", "believed=-;believed.b=1,2,3", "kept=1", "kept.seed=x", "kept.outputs="),
     *("gains.extended_kalman.noise_variance=-1", "gains.identifier_based.reset_ratio=0.5", "gains.identifier_based=1"),
     *("gains.nobody.gain=1", "gains.identifier_based.gain=x", "switches.sliding_mode=soft", "scenario=my_recording"),

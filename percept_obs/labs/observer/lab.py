@@ -15,9 +15,9 @@ from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.analysis import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.observer.registry import refuse_other_motion, registry_of, view_of, with_numbers
 from percept_obs.labs.observer.settings import (
-    CHARTS,
     DRIVE,
     HOLDS,
+    LOOKS,
     SCENARIOS,
     SCHEMA,
     STANDARD,
@@ -42,7 +42,6 @@ from percept_obs.labs.shared.schema import Choice, Settings
 from percept_obs.labs.shared.surfaces import SHAPES, numbers_of, shaped_surface
 from percept_obs.labs.shared.typed_motion import read_motion
 from percept_obs.labs.shared.user_observers import read_observers
-from percept_obs.labs.shared.view import view_of as view_of_charts
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
 from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observers import Observer
@@ -99,7 +98,7 @@ class ObserverLab(Lab):
     schema = SCHEMA
     title = "One point, a camera, and observers"
     blocks = BLOCKS
-    looks = view_of_charts(CHARTS)
+    looks = LOOKS
     frames: Any = traitlets.List(help="Films behind tracks, their frames as PNG or JPEG files.").tag(sync=True)
 
     @checked

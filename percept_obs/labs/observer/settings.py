@@ -12,6 +12,7 @@ from percept_obs.labs.shared.observer_texts import with_all_gains
 from percept_obs.labs.shared.schema import Choice, Group, Names, Number, Optional, Row, Schema, Settings, vector
 from percept_obs.labs.shared.surfaces import SURFACES, numbers_of
 from percept_obs.labs.shared.typed_motion import typed_setting
+from percept_obs.labs.shared.view import view_of
 from percept_obs.recording import Scenario, scenarios
 
 SCENARIOS = {
@@ -20,8 +21,10 @@ SCENARIOS = {
 FIRST_GUESS = 6.0
 """Metres from the camera at which the estimate of a drive starts: not where the point is, and in the picture."""
 HOLDS = ("zero", "first", "exact")
-CHARTS = ("error", "inverse", "outputs", "innovation", "excitation")
-"""Charts below that of the distance."""
+LOOKS = view_of(
+    groups=("observers", "gains", "scene", "camera", "start"),
+    charts=("error", "inverse", "outputs", "innovation", "excitation"),
+)
 _ROWS = [[f"a{i}{j}" for j in (1, 2, 3)] for i in (1, 2, 3)]
 
 

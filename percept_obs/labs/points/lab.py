@@ -12,7 +12,7 @@ import sympy as sp
 
 from percept_obs.compile import vectorised
 from percept_obs.labs.points.analysis import in_words
-from percept_obs.labs.points.settings import CHARTS, DRIVE, LONGEST, SCHEMA
+from percept_obs.labs.points.settings import DRIVE, LONGEST, LOOKS, SCHEMA
 from percept_obs.labs.points.texts import (
     BLOCKS,
     STATES,
@@ -29,7 +29,6 @@ from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import is_sampled, refuse_longer, times_of
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import read_motion
-from percept_obs.labs.shared.view import view_of
 from percept_obs.labs.shared.work import solver_calls, too_much, within_reach
 from percept_obs.observability.windows import UNSEEN
 from percept_obs.points import FirstSight, PointsRun, PointsScenario, UnseenDirection, luenberger
@@ -83,7 +82,7 @@ class PointsLab(Lab):
     schema = SCHEMA
     title = "Many points of one state"
     blocks = BLOCKS
-    looks = view_of(CHARTS)
+    looks = LOOKS
 
     @checked
     def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:

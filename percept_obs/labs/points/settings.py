@@ -5,9 +5,11 @@ from percept_obs.labs.points.typed_weight import MOST_OF_P
 from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, noise
 from percept_obs.labs.shared.schema import Choice, Number, Optional, Row, Schema, Settings, Several, Text, vector
 from percept_obs.labs.shared.typed_motion import typed_setting
+from percept_obs.labs.shared.view import view_of
 
-CHARTS = ("error", "points", "depth", "gramian")
-"""Charts below that of the mean error."""
+LOOKS = view_of(
+    groups=("points", "weight", "motion", "start", "camera"), charts=("error", "points", "depth", "gramian")
+)
 WEIGHTS = ("constant", "scheduled", "typed", "lyapunov", "riccati")
 LONGEST = 120.0
 """Seconds that a run lasts at most."""

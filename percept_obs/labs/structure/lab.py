@@ -20,9 +20,8 @@ from percept_obs.labs.shared.samples import samples_for_the_page
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Typed, read_motion
 from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
-from percept_obs.labs.shared.view import view_of
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
-from percept_obs.labs.structure.settings import CHARTS, DRIVE, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
+from percept_obs.labs.structure.settings import DRIVE, LOOKS, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.user_defined import Given, opening_of, refuse_samples, zero_in
 from percept_obs.observers import Observer
@@ -93,7 +92,7 @@ class StructureLab(Lab):
     schema = SCHEMA
     title = "Structure and motion"
     blocks = BLOCKS
-    looks = view_of(CHARTS)
+    looks = LOOKS
 
     def __init__(self, form: Given | None = None, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
         plain = form is None and observers is None and not set(settings) - set(self.looks)

@@ -5,12 +5,15 @@ from dataclasses import replace
 from percept_obs.labs.shared.common_settings import KEPT, SEED, noise
 from percept_obs.labs.shared.schema import Choice, Flag, Group, Names, Number, Row, Schema, Settings, vector
 from percept_obs.labs.shared.typed_motion import typed_setting
+from percept_obs.labs.shared.view import view_of
 from percept_obs.labs.structure.texts import OBSERVERS, case_of
 from percept_obs.structure import QUANTITIES
 from percept_obs.tracking.verdict import TOLERANCE
 
-CHARTS = ("unknown1", "unknown2", "unknown3", "error", "image", "depth", "innovation", "determinant", "range")
-"""Charts below that of the distance, or of a speed."""
+LOOKS = view_of(
+    groups=("known", "observers", "gains", "scene", "camera", "run"),
+    charts=("unknown1", "unknown2", "unknown3", "error", "image", "depth", "innovation", "determinant", "range"),
+)
 LONGEST = 100.0
 """Seconds that a run lasts at most."""
 

@@ -164,7 +164,7 @@ export class TimeChart extends View {
     const [right, bottom] = [width - PAD.right, height - PAD.bottom];
     this.axes(chart, right, bottom);
     this.avoid(width / 2, height - PAD.bottom / 2, width / 2, PAD.bottom / 2);
-    for (const { begin, end, text } of chart.spans ?? []) this.drawSpan(begin, end, text, right, bottom);
+    this.drawSpans(chart.spans ?? [], right, bottom);
     if (chart.bars) this.drawBars(chart.bars, now, bottom);
     if (chart.level) this.drawLevel(chart.level, right);
     this.inside(PAD.left, right + 1, () => {
@@ -225,12 +225,19 @@ export class TimeChart extends View {
     }
   }
 
-  drawSpan(begin, end, text, right, bottom) {
-    const [from, to] = [begin, end].map((time) => within(this.x(time), PAD.left, right));
-    if (!(to > from)) return;
-    this.hatched((pen) => pen.rect(from, PAD.top, to - from, bottom - PAD.top));
-    const at = [(from + to) / 2, bottom - this.floor - 20];
-    if (text) this.tag({ id: text, text, at, colour: this.theme.warning, rank: 5, gap: 0 });
+  /** Hatched spans; of those with one text the widest bears it. */
+  drawSpans(spans, right, bottom) {
+    const widest = new Map();
+    for (const { begin, end, text } of spans) {
+      const [from, to] = [begin, end].map((time) => within(this.x(time), PAD.left, right));
+      if (!(to > from)) continue;
+      this.hatched((pen) => pen.rect(from, PAD.top, to - from, bottom - PAD.top));
+      if (text && to - from > (widest.get(text)?.wide ?? 0)) widest.set(text, { wide: to - from, x: (from + to) / 2 });
+    }
+    for (const [text, { x }] of widest) {
+      const at = [x, bottom - this.floor - 20];
+      this.tag({ id: text, text, at, colour: this.theme.warning, rank: 5, gap: 0 });
+    }
   }
 
   /** A level such as the tolerance, where the scale reaches it. */

@@ -75,19 +75,19 @@ export class Address {
   /** What the address tells as settings is also how they are looked at. */
   get told() {
     const { schema, standard, view } = this.lab.model;
-    const kinds = { ...schema, view: { kind: "group", of: view.schema } };
-    return { schema: kinds, standard: { ...standard, view: view.standard } };
+    const kinds = { ...schema, look: { kind: "group", of: view.schema } };
+    return { schema: kinds, standard: { ...standard, look: view.standard } };
   }
 
   read(text) {
-    const { view, kept, ...settings } = settingsIn(text, this.told);
-    if (kept) delete kept.view;
-    return { settings: { ...settings, kept }, view };
+    const { look, kept, ...settings } = settingsIn(text, this.told);
+    if (kept) delete kept.look;
+    return { settings: { ...settings, kept }, view: look };
   }
 
   text(settings, view) {
-    const kept = settings.kept && { ...settings.kept, view };
-    return textOf({ ...settings, kept, view }, this.told);
+    const kept = settings.kept && { ...settings.kept, look: view };
+    return textOf({ ...settings, kept, look: view }, this.told);
   }
 
   /** Settings have come to rest. */

@@ -28,11 +28,14 @@ export class Drawer {
     this.messages = messages;
     this.history = historyButtons(lab);
     this.code = element("pre", { class: "code", hidden: true, tabindex: 0 });
+    this.write = () => "";
     this.keep = button("Keep", () => lab.keep(), {
       ...{ "data-control": "keep", "aria-pressed": "false", title: "Keep this run to compare with" },
     });
     /** @type {Group[]} */
     this.groups = [...groups, ...this.own()];
+    /** What is open when the drawer opens again. */
+    this.last = this.groups[0].name;
     this.folds = this.groups.map(({ name, title, inside }) => {
       const summary = element("summary", { "data-control": `group ${name}` }, title);
       // The view says which is open, so that it can be sent and saved.
@@ -42,7 +45,7 @@ export class Drawer {
       });
       return element("details", { class: `group group-${name}` }, summary, ...inside);
     });
-    this.more = button("More", () => lab.unfold(lab.state.view.more ? "" : this.groups[0].name), {
+    this.more = button("More", () => lab.unfold(lab.state.view.more ? "" : this.last), {
       ...{ class: "link", "data-control": "more", "aria-expanded": "false" },
     });
     this.body = element(
@@ -67,16 +70,19 @@ export class Drawer {
   }
 
   copyCode() {
-    return this.copy(this.lab.copy(), "Python code of this run", "Copied: paste it into a cell.");
+    return this.copy(() => this.lab.copy(), "Python code of this run", "Copied: paste it into a cell.");
   }
 
   copyLink() {
     const then = window.location.protocol === "file:" ? "it opens where this file is" : "it opens the lab as it is now";
-    return this.copy(this.lab.address.link(), "Link to this lab as it is now", `Copied: ${then}.`);
+    return this.copy(() => this.lab.address.link(), "Link to this lab as it is now", `Copied: ${then}.`);
   }
 
-  async copy(text, label, then) {
+  /** Copy a text, which stands there as long as it is of what is shown. */
+  async copy(write, label, then) {
     const { code, messages } = this;
+    const text = write();
+    this.write = write;
     code.textContent = text;
     code.setAttribute("aria-label", label);
     code.hidden = false;
@@ -103,7 +109,7 @@ export class Drawer {
       { name: "charts", title: "Charts", inside: [this.charts(), ...this.panel.of("charts")] },
       { name: "words", title: "In words", inside: [verdicts, why, analysis], show: speak },
       {
-        ...{ name: "equations", title: "Equations, with the present numbers", inside: [lab.formulas.body] },
+        ...{ name: "equations", title: "Equations", inside: [lab.formulas.body] },
         show: () => lab.formulas.show(lab.shown.settings),
       },
       { name: "symbols", title: "Symbols and words", inside: [symbolTable(lab.parts.symbols)] },
@@ -140,6 +146,7 @@ export class Drawer {
     setText(this.more, more ? "Less" : "More");
     this.folds.forEach((fold, k) => (fold.open = this.groups[k].name === more));
     if (!more) return;
+    this.last = more;
     this.history.show(lab.state);
     setText(this.keep, lab.settings.kept ? "Forget" : "Keep");
     this.keep.setAttribute("aria-pressed", String(Boolean(lab.settings.kept)));
@@ -152,7 +159,7 @@ export class Drawer {
     const { lab } = this;
     if (!lab.state.view.more || !lab.shown || lab.shown.problem) return;
     this.groups.find(({ name }) => name === lab.state.view.more)?.show?.();
-    this.code.hidden ||= this.code.textContent !== lab.copy() && !this.code.textContent?.startsWith("http");
+    this.code.hidden ||= this.code.textContent !== this.write();
   }
 }
 

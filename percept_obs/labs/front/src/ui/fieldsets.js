@@ -19,11 +19,11 @@ export class Fieldsets {
 
   /** Bring all controls to the present settings. */
   show() {
-    const { settings, shown } = this.lab;
+    const { settings, shown, state } = this.lab;
     // What some controls say is known only once something of the settings was computed.
     const computed = shown?.settings === settings;
-    if (this.shownFor === settings && this.computed === computed) return;
-    Object.assign(this, { shownFor: settings, computed });
+    if (this.shownFor === state.now && this.computed === computed) return;
+    Object.assign(this, { shownFor: state.now, computed });
     for (const control of this.controls) control.show();
   }
 

@@ -182,7 +182,7 @@ export class Lab extends LabBase {
   findPart() {
     const { shown } = this;
     const { low, high } = this.whole;
-    const of = [shown.settings.scenario, low, high].join();
+    const of = [shown.settings.scenario, low, high, shown.settings.observers].join();
     if (this.part.of === of || this.late) return;
     const last = Math.max(...(shown.runs ?? []).map(({ settling }) => settling ?? Infinity));
     const early = shown.runs?.length > 0 && last > 0 && last < EARLY * (high - low) && high - low > LONG;
@@ -190,12 +190,6 @@ export class Lab extends LabBase {
   }
 
   // What the hand does.
-
-  /** Look at something else of the same run: a step of its own. */
-  look(changes) {
-    this.state.look(changes);
-    this.looked();
-  }
 
   /** Open a group of the drawer; no step, for the buttons that lead back stand in it. */
   unfold(more) {

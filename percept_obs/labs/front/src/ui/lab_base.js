@@ -53,6 +53,7 @@ export class LabBase {
     this.view = view;
     this.link = new Link(this.widget, {
       onSettings: (settings) => same(settings, this.settings) || this.replace(settings),
+      onView: (view) => same(view, this.state.view) || this.look(structuredClone(view)),
       onAnalysis: (analysis, settings) => this.analysed({ ...analysis, settings }),
       onError: (text) => this.view.pythonError(text),
       onSilence: (silence) => this.view.silence(silence),
@@ -119,6 +120,14 @@ export class LabBase {
     this.state.step({ settings: structuredClone(settings) });
     this.touched(true);
   }
+
+  /** Look at something else of the same run: a step of its own. */
+  look(changes) {
+    this.state.look(changes);
+    this.looked();
+  }
+
+  looked() {}
 
   reset() {
     this.state.reset(structuredClone(this.model.opening));

@@ -4,7 +4,7 @@ const PATIENCE = 4000;
 
 /** Sends settings and summary, hears what Python adds to them, and tells when Python does not answer. */
 export class Link {
-  constructor(widget, { onSettings, onAnalysis, onError, onSilence }) {
+  constructor(widget, { onSettings, onView, onAnalysis, onError, onSilence }) {
     this.widget = widget;
     /** @type {{settings: any, serial: number} | null} */
     this.sent = null;
@@ -12,6 +12,7 @@ export class Link {
     this.onSilence = onSilence;
     this.listeners = {
       "change:settings": () => onSettings(widget.get("settings")),
+      "change:view": () => onView(widget.get("view")),
       "change:error": () => onError(widget.get("error")),
       "change:analysis": () => this.heard(widget.get("analysis"), onAnalysis),
     };

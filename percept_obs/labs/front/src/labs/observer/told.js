@@ -109,7 +109,8 @@ function mainGain(lab, change, rest) {
   const row = element("div", { class: "sliding" });
   const of = () => {
     const { name, low, high } = gain();
-    const key = [lab.chosenName(), name].join(".");
+    const observer = lab.chosenName();
+    const key = [observer, name].join(".");
     if (made.key === key) return made.control;
     const place = `gains.${key}`;
     made.key = key;
@@ -117,7 +118,7 @@ function mainGain(lab, change, rest) {
       ...{ name: "gain", label: name === "gain" ? "Gain" : name.replaceAll("_", " "), rest },
       ...(low > 0 && high / low >= 50 ? { low, high, log: true } : { low, high, step: (high - low) / 1000 }),
       get: () => valueAt(lab.settings, place),
-      set: (value) => lab.kernels.allows(lab.chosenName(), name, value) && change(changeAt(lab.settings, place, value)),
+      set: (value) => lab.kernels.allows(observer, name, value) && change(changeAt(lab.settings, place, value)),
       text: (value) => readable(value),
     });
     row.replaceChildren(made.control.row);
