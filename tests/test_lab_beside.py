@@ -47,10 +47,12 @@ MOVE = """async (count) => {
         await new Promise((resolve) => requestAnimationFrame(resolve));
     }
 }"""
-PLACE = "() => { const [{ screen }] = window.perceptObsLabs; return screen.handles.find(({ at }) => at).at; }"
-KEYS_FASTER_THAN_PICTURES = """() => {
+PLACE = (
+    "(name) => [...window.perceptObsLabs][0].screen.handles.find((handle) => handle.node.dataset.control === name).at"
+)
+KEYS_FASTER_THAN_PICTURES = """(name) => {
     const [lab] = window.perceptObsLabs;
-    const { node } = lab.screen.handles.find(({ at }) => at);
+    const { node } = lab.screen.handles.find((handle) => handle.node.dataset.control === name);
     for (const key of ["ArrowRight", "ArrowRight", "ArrowUp"]) {
         node.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
         lab.paint();  // a picture of the settings before: nothing comes from the worker meanwhile
@@ -75,6 +77,9 @@ PLAY = """(seconds) => new Promise((resolve) => {
         resolve({ frames, pictures: lab.pictures - pictures, seconds: (performance.now() - began) / 1000 });
     }, 1000 * seconds);
 })"""
+HANDLES = [(observer_lab, "foe", 0.01), (structure_lab, "camera", 0.25), (points_lab, "mark 1", 0.01)]
+"""A handle of each lab, and how far a key moves it."""
+
 FOUR = {"observers": ["identifier_based", "sliding_mode", "extended_kalman", "de_luca"], "duration": 20.0}
 MOVES, SECONDS = sampled(150, 1000), sampled(2, 600)
 
@@ -130,6 +135,7 @@ def test_under_the_stated_policy_a_worker_computes_what_python_computes(show):
     page.evaluate(UNFOLD)
     page.fill(control("duration number"), "8")
     page.check(control("observer de_luca"))
+    page.check(control("chart error"))
     page.click(control("keep"))
     rested(page)
     shown = state(page)
@@ -179,18 +185,19 @@ def test_while_a_heavy_picture_is_computed_the_page_goes_on(show):
     assert found["turns"] > 20, found
 
 
-@pytest.mark.parametrize("make", [observer_lab, structure_lab, points_lab])
-def test_keys_lose_no_step_where_pictures_are_late(show, make):
+@pytest.mark.parametrize(("make", "name", "step"), HANDLES)
+def test_keys_lose_no_step_where_pictures_are_late(show, make, name, step):
     page = with_worker(show, make())
-    before = page.evaluate(PLACE)
-    page.evaluate(KEYS_FASTER_THAN_PICTURES)
+    before = page.evaluate(PLACE, name)
+    page.evaluate(KEYS_FASTER_THAN_PICTURES, name)
     rested(page)
-    assert [b - a for a, b in zip(before, page.evaluate(PLACE), strict=True)] == pytest.approx([0.02, 0.01])
+    moved = [b - a for a, b in zip(before, page.evaluate(PLACE, name), strict=True)]
+    assert moved == pytest.approx([2 * step, step])
 
 
 def test_play_runs_at_the_rate_of_the_screen_and_neither_moves_nor_play_fill_the_memory(show):
     """The estimates of four runs are 192 kB here; kept at every move they would fill several times the bound."""
-    page = with_worker(show, observer_lab(**FOUR))
+    page = with_worker(show, observer_lab(**FOUR), reduced_motion="no-preference")
     used = memory_of(page)
     page.evaluate(MOVE, 100)
     page.evaluate(PLAY, 1)

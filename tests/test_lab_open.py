@@ -212,7 +212,7 @@ test_a_bad_text_is_a_sentence_with_the_place_and_is_never_run = refuses(
     (observer_lab, {"motion": "b1 = sech(t)"}, "cannot be printed alike in Python and JavaScript"),
     (observer_lab, {"motion": "b1 = 9^9^9^9"}, "a power of a power needs brackets"),
     (structure_lab, {"motion": "b1 = 1; v_c1 = q"}, '"q" is no letter here'),
-    (points_lab, {"motion": "P = t"}, 'motion gives P; choose weight="typed"'),
+    (points_lab, {"motion": "P = t"}, "motion gives P; give it as P="),
     (points_lab, {"weight": "typed", "P": "w_c1 = t"}, "P gives no value; it must be one expression"),
     (points_lab, {"weight": "typed", "P": "P = 1 - t"}, "P is .* at 1.02 s; it must be from 1e-9"),
     (points_lab, {"P": "[1, 1, 1 - t]"}, "P is .* at 1.02 s; it must be from 1e-9"),

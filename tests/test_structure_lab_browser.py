@@ -72,7 +72,7 @@ def test_the_determinant_has_its_formula_and_its_number(fresh):
 
 
 def test_the_limit_of_the_layer_is_told_with_its_remedy(fresh):
-    fresh.check(control("observer layer"))
+    fresh.click(control("choose layer"))
     fresh.fill(control("duration number"), "60")
     rested(fresh)
     assert "from 34.4 s on" in state(fresh)["words"]
