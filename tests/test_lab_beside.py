@@ -192,7 +192,7 @@ def test_keys_lose_no_step_where_pictures_are_late(show, make, name, step):
     page.evaluate(KEYS_FASTER_THAN_PICTURES, name)
     rested(page)
     moved = [b - a for a, b in zip(before, page.evaluate(PLACE, name), strict=True)]
-    assert moved == pytest.approx([2 * step, step])
+    assert moved == pytest.approx([2 * step, step], rel=0.005)  # a speed has three digits
 
 
 def test_play_runs_at_the_rate_of_the_screen_and_neither_moves_nor_play_fill_the_memory(show):
