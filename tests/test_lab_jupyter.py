@@ -187,7 +187,7 @@ def test_the_kernel_answers_what_is_typed_at_the_desk(browser_page, folder):
     assert log_entries(page) == ""
 
 
-PLAYED = f"() => !{FIRST}.first.clock.playing && !{FIRST}.first.clock.secret"
+PLAYED = f"() => !{FIRST}.screen.clock.playing && !{FIRST}.screen.clock.secret"
 SETTLED = f"() => {FIRST}.shown.runs[0].settling"
 
 
@@ -199,7 +199,7 @@ def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, fol
     rested(page)
     page.locator(control("play")).scroll_into_view_if_needed()
     page.wait_for_function(PLAYED)
-    assert page.inner_text(".says").startswith("Found: ")
+    assert page.inner_text(".says").startswith("Found")
     assert page.evaluate(SETTLED) == pytest.approx(2.25)
 
     page.mouse.move(*centre(page, control("foe")))
@@ -209,7 +209,7 @@ def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, fol
     rested(page)
     assert page.evaluate(SETTLED) == np.inf
     page.click(control("why"))
-    np.testing.assert_allclose(page.evaluate(f"() => {FIRST}.first.seen.copies"), 0, atol=1e-9)
+    np.testing.assert_allclose(page.evaluate(f"() => {FIRST}.screen.seen.copies"), 0, atol=1e-9)
 
     page.click(control("again"))
     rested(page)

@@ -1,6 +1,7 @@
 // Controls that a keyboard, a screen reader and a hand can use.  Each has a row of the page, and show() brings it to
 // the present settings.
 
+import { within } from "../engine/between.js";
 import { element, formula, setAttribute, setText } from "../draw/dom.js";
 
 let count = 0;
@@ -56,11 +57,24 @@ function isBeingTyped(field) {
   return document.activeElement === field && field.getAttribute("aria-invalid") === "true";
 }
 
+/** Parts into which a range without a step is divided, and how wide it is where these are equal ratios. */
+const [PARTS, WIDE] = [1000, 20];
+
+/** The step of a range, or whether it is divided into equal ratios. */
+function stepsOf({ low, high, step, log = step === undefined && low > 0 && high / low >= WIDE }) {
+  return { log, step: step ?? (high - low) / PARTS };
+}
+
 /** An input that slides, with the function that brings it to a value and its words; `take` takes what a hand asks. */
-function sliding(/** @type {any} */ { low, high, step, log = false }, attributes, take, rest) {
-  const [inside, outside] = log ? [Math.log10, (v) => Number((10 ** v).toPrecision(3))] : [Number, Number];
+function sliding(/** @type {any} */ sizes, attributes, take, rest) {
+  const { low, high } = sizes;
+  const { log, step } = stepsOf(sizes);
+  const ratio = (v) => within(Number((10 ** v).toPrecision(3)), low, high);
+  const [inside, outside] = log ? [Math.log10, ratio] : [Number, Number];
+  // Whole steps lead to both ends.
+  const [min, max] = log ? [Math.floor(100 * inside(low)) / 100, Math.ceil(100 * inside(high)) / 100] : [low, high];
   const box = element("input", {
-    ...{ type: "range", min: inside(low), max: inside(high), step: log ? 0.01 : step, ...attributes },
+    ...{ type: "range", min, max, step: log ? 0.01 : step, ...attributes },
     oninput: () => take(outside(Number(box.value))),
     onchange: () => rest?.(),
   });
@@ -89,7 +103,8 @@ export function range(/** @type {any} */ { name, label, get, set, rest, text = S
 
 /** A slider and a field for a number; `meaning` says in small letters what the name stands for. */
 export function slider(options) {
-  const { name, label, meaning = "", letter = "", step, low, log = false, unit = "", get, set, rest } = options;
+  const { name, label, meaning = "", letter = "", low, unit = "", get, set, rest } = options;
+  const { log, step } = stepsOf(options);
   const id = nextId();
   const refused = warning(options);
   const take = (value) => {

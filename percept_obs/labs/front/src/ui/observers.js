@@ -96,8 +96,6 @@ export class Observers {
         ...gain,
         name: `${name} ${gain.name}`,
         label: gain.name.replaceAll("_", " "),
-        log: gain.low > 0 && gain.high / gain.low >= 50,
-        step: (gain.high - gain.low) / 1000,
         allowed: (value) => lab.kernels.allows(name, gain.name, value),
         get: () => (used() ? lab.settings.gains[name][gain.name] : undefined),
         set: (value) => lab.change(changeAt(lab.settings, `gains.${name}.${gain.name}`, value)),

@@ -115,8 +115,7 @@ function mainGain(lab, change, rest) {
     const place = `gains.${key}`;
     made.key = key;
     made.control = range({
-      ...{ name: "gain", label: name === "gain" ? "Gain" : name.replaceAll("_", " "), rest },
-      ...(low > 0 && high / low >= 50 ? { low, high, log: true } : { low, high, step: (high - low) / 1000 }),
+      ...{ name: "gain", label: name === "gain" ? "Gain" : name.replaceAll("_", " "), low, high, rest },
       get: () => valueAt(lab.settings, place),
       set: (value) => lab.kernels.allows(observer, name, value) && change(changeAt(lab.settings, place, value)),
       text: (value) => readable(value),
