@@ -47,10 +47,9 @@ REFERENCE = Path(__file__).with_name("reference.js").read_text("utf-8")
 RESET = "() => [...window.perceptObsLabs][0].reset()"
 ALL_OF_ITS_TIME = """() => {
     const [lab] = window.perceptObsLabs;
-    lab.zoom?.((timeline) => timeline.select(timeline.whole));
-    if (lab.face !== "first") return;
-    lab.first.clock.begun = true;
-    lab.first.clock.finish();  // where the camera has come far enough to be a handle
+    lab.showAll();
+    lab.screen.clock.begun = true;
+    lab.screen.clock.finish();  // where the camera has come far enough to be a handle
 }"""
 
 OPENING = """() => {
@@ -70,11 +69,8 @@ OPENING = """() => {
     look();
 }"""
 
-HANDLES = {"observer_lab": "foe", "structure_lab": "ybar", "points_lab": "point 1"}
-"""Handle that is dragged in each lab's workbench."""
-
-FIRST_HANDLES = {"observer_lab": "first foe", "structure_lab": "first camera"}
-"""Handle that is dragged on each lab's first screen; each of its moves makes a new run."""
+HANDLES = {"observer_lab": "foe", "structure_lab": "camera", "points_lab": "mark 1"}
+"""Handle that is dragged in each lab; each of its moves makes a new run."""
 
 SWITCH = {
     "observer_lab": {"surface": "plane", "outputs": ["y1"], "observers": ["extended_kalman", "linear_approximation"]},
@@ -85,20 +81,27 @@ SWITCH = {
 
 
 class Case(NamedTuple):
-    """A lab and the settings that it opens with."""
+    """A lab, and what it opens with."""
 
     lab: str
     settings: dict[str, Any]
-    face: str = "workbench"
+    scenario: str = ""
+
+    def opened(self) -> Any:
+        """The lab, opened by Python."""
+        return getattr(labs, self.lab)(*filter(None, [self.scenario]), **self.settings)
 
     @property
     def handle(self) -> str:
         """Handle that is dragged."""
-        return (HANDLES if self.face == "workbench" else FIRST_HANDLES)[self.lab]
+        return HANDLES[self.lab]
 
 
 TWO = ["identifier_based", "sliding_mode"]
-THREE = {"pictures": ["inverse", "distance", "error"]}
+THREE = [*TWO, "extended_kalman"]
+OPEN_DRAWER = {"more": "observers", "charts": ["error", "inverse"]}
+"""The drawer, and two charts below the first."""
+CHARTS = {"charts": ["error", "inverse"]}
 NOISY = {"outputs": ["y1"], "noise": {"kind": "uniform", "size": 0.05}}
 RICCATI = {"weight": "riccati", "size": 0.01}
 
@@ -108,13 +111,14 @@ def _places(count: int) -> dict[str, Any]:
 
 
 OBSERVER = {
-    "three charts of two and three lines": {**THREE, "kept": {}},
-    "three charts of five and six lines": {**THREE, "observers": [*TWO, "extended_kalman"], "kept": {"observers": TWO}},
-    "thousands of resets": {**THREE, **NOISY, "observers": TWO},
-    **{f"{name} alone, three charts": {**THREE, "observers": [name]} for name in BY_NAME},
+    "three observers, drawer, two charts": Case(
+        "observer_lab", {**OPEN_DRAWER, "observers": THREE, "duration": 4.0}, "drive"
+    ),
+    "the same on 80 s of (35)": Case("observer_lab", {**OPEN_DRAWER, "observers": THREE}, "ma2005_eq35"),
+    "thousands of resets": Case("observer_lab", {**CHARTS, **NOISY, "observers": TWO}, "ma2005_eq35"),
+    **{f"{name} alone, two charts": Case("observer_lab", {**CHARTS, "observers": [name]}) for name in BY_NAME},
 }
 STRUCTURE = {
-    "opening, 3000 steps": {},
     "seven lines, a kept run": {"observers": ["ideal", "layer", "extended_kalman"], "kept": {}},
     "velocities that vary, corollary 5": {
         "unknown": ["v_p1", "v_p2", "v_p3"],
@@ -123,10 +127,9 @@ STRUCTURE = {
     },
 }
 POINTS = {
-    "three, three charts": {},
     "three, Riccati, a kept run, four charts": {
         **RICCATI,
-        "pictures": ["error", "depth", "points", "gramian"],
+        "charts": ["error", "depth", "points", "gramian"],
         "kept": {},
     },
     "eight, 24 states": _places(8),
@@ -134,12 +137,12 @@ POINTS = {
     f"{MOST_POINTS}, {3 * MOST_POINTS} states, Riccati": {**_places(MOST_POINTS), **RICCATI},
 }
 CASES = {
-    **{f"first screen, {lab}": Case(lab, {}, "first") for lab in FIRST_HANDLES},
-    **{name: Case("observer_lab", settings) for name, settings in OBSERVER.items()},
+    **{f"opening, {lab}": Case(lab, {}) for lab in HANDLES},
+    **OBSERVER,
     **{f"structure, {name}": Case("structure_lab", settings) for name, settings in STRUCTURE.items()},
     **{f"points, {name}": Case("points_lab", settings) for name, settings in POINTS.items()},
 }
-BESIDE_A_BUSY_KERNEL = [name for name in CASES if name.startswith("three charts")]
+BESIDE_A_BUSY_KERNEL = [name for name in CASES if name.startswith("three observers")]
 
 
 def drag(page: Any, handle: str, seconds: float) -> dict[str, Any]:
@@ -222,8 +225,9 @@ def reference_page(context: Any) -> Any:
 
 def open_in_jupyterlab(page: Any, folder: Path, case: Case) -> None:
     """Open a lab in a notebook with a busy cell, and leave it at rest."""
-    arguments = f"**json.loads({json.dumps(case.settings)!r})"
-    opening = OPEN.replace("observer_lab", case.lab).replace("workbench", case.face)
+    scenario = f"{case.scenario!r}, " if case.scenario else ""
+    arguments = f"{scenario}**json.loads({json.dumps(case.settings)!r})"
+    opening = OPEN.replace("observer_lab", case.lab)
     imports, _, cell = opening.format(arguments=arguments).partition("lab = ")
     write_notebook(folder, "bench.ipynb", imports, f"lab = {cell}", "ready = True", BUSY)
     page.bring_to_front()
@@ -283,9 +287,10 @@ def measure_in_jupyterlab(wanted: dict[str, Case], opening: bool) -> None:
                     measure(f"{title}, kernel busy", page, reference, handle, lambda: run_busy_cell(page))
 
 
-def open_alone(context: Any, lab: Any, face: str = "workbench") -> Any:
+def open_alone(browser: Any, lab: Any) -> Any:
     """A lab at rest in a page without JupyterLab, and without Python but for an answer."""
-    page = lab_alone.opened(context, lab, answers=lambda told: {"analysis": {**told["summary"]}}, face=face)
+    options = {"reduced_motion": "no-preference", "viewport": {"width": 1280, "height": 900}}
+    page = lab_alone.opened(browser, lab, answers=lambda told: {"analysis": {**told["summary"]}}, **options)
     page.wait_for_function(lab_alone.DRAWN)
     rested(page, 60)
     return page
@@ -298,15 +303,15 @@ def launched() -> Any:
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=found_chromium(), args=list(CHROMIUM_OPTIONS))
-        yield browser.new_context(viewport={"width": 1280, "height": 900})
+        yield browser
         browser.close()
 
 
 def measure_alone(wanted: dict[str, Case]) -> None:
     """Measure configurations in pages without JupyterLab, which open at once."""
-    with launched() as context, reference_page(context) as reference:
+    with launched() as browser, reference_page(browser) as reference:
         for title, case in wanted.items():
-            page = open_alone(context, getattr(labs, case.lab)(**case.settings), case.face)
+            page = open_alone(browser, case.opened())
             measure(title, page, reference, case.handle)
             page.close()
 

@@ -11,9 +11,9 @@
     const latencies = [];
     const waiting = [];
     let [pictures, before, samples] = [0, null, Infinity];
-    const draw = lab.draw.bind(lab);
-    lab.draw = () => {
-        draw();
+    const paint = lab.paint.bind(lab);
+    lab.paint = () => {
+        paint();
         const { shown } = lab;
         if (shown.settings === before) return;
         before = shown.settings;
@@ -34,10 +34,11 @@
     const began = performance.now();
     const finish = () => {
         const took = (performance.now() - began) / 1000;
-        delete lab.draw;
+        delete lab.paint;
         const { runs = [] } = lab.shown;
         const resets = runs.reduce((sum, run) => sum + run.resets.length, 0);
-        const lines = Object.values(lab.drawn).map((chart) => chart.lines.length);
+        const lines = !lab.screen ? [] : [lab.screen.chart, ...lab.state.view.charts.map((name) => lab.screen.charts[name])]
+            .map(({ chart }) => chart.lines.length);
         tell("pointerup", k);
         resolve({ pictures, took, latencies, samples, resets, lines });
     };
@@ -46,9 +47,11 @@
     after.port1.onmessage = () => {
         if (performance.now() - began > 1000 * seconds) return finish();
         const at = performance.now();
+        const { settings } = lab;
         tell("pointermove", ++k);
-        waiting.push({ at, settings: lab.settings });
-        if (!patient) requestAnimationFrame(() => after.port2.postMessage(0));
+        // A place that is impossible changes nothing.
+        if (lab.settings !== settings) waiting.push({ at, settings: lab.settings });
+        if (!patient || !waiting.length) requestAnimationFrame(() => after.port2.postMessage(0));
     };
     after.port2.postMessage(0);
 })

@@ -14,10 +14,9 @@ const lines = Array.from({ length: LINES }, (_, n) => Float64Array.from({ length
 class Reference {
     settings = { shift: 0 };
     shown = { settings: null, time: lines[0] };
-    drawn = {};
     pending = false;
 
-    draw() {
+    paint() {
         const { settings } = this;
         this.shown = { settings, time: lines[0] };
         pens.forEach((pen) => pen.clearRect(0, 0, WIDTH, HEIGHT));
@@ -34,7 +33,7 @@ handle.addEventListener("pointermove", (event) => {
     lab.settings = { shift: event.clientX / 20 };
     if (!lab.pending) requestAnimationFrame(() => {
         lab.pending = false;
-        lab.draw();
+        lab.paint();
     });
     lab.pending = true;
 });

@@ -14,6 +14,8 @@ const LATER = 0.28;
 const [BAR, BARS, RESET, ROW] = [4, 6, 6, 12];
 /** Pixels within which a press is meant for a line, and a pointer has not moved. */
 const [NEAR, STILL] = [9, 4];
+/** Pixels between two points of a path at most, and how far those left out may lie off. */
+const [APART, OFF] = [6, 0.1];
 /** How many places of a line may bear its name. */
 const NAMED = 24;
 
@@ -167,11 +169,14 @@ export class TimeChart extends View {
     this.drawSpans(chart.spans ?? [], right, bottom);
     if (chart.bars) this.drawBars(chart.bars, now, bottom);
     if (chart.level) this.drawLevel(chart.level, right);
-    this.inside(PAD.left, right + 1, () => {
-      if (chart.band) this.fillBand(chart.band);
-      for (const line of chart.lines) if (!line.secret) this.curve(line, LATER);
-    });
-    this.inside(PAD.left, this.x(now) + 0.5, () => chart.lines.forEach((line) => this.curve(line, 1)));
+    const present = this.x(now);
+    const { band } = chart;
+    if (band) this.inside(PAD.left, right + 1, () => this.fillBand(band));
+    if (present < right)
+      this.inside(Math.max(present, PAD.left), right + 1, () => {
+        for (const line of chart.lines) if (!line.secret) this.curve(line, LATER);
+      });
+    this.inside(PAD.left, present + 0.5, () => chart.lines.forEach((line) => this.curve(line, 1)));
     (chart.resets ?? []).forEach((resets, row) => this.drawResets(resets, row, right));
     for (const { time, value, text, colour } of chart.found ?? []) {
       if (time < span.low || time > span.high) continue;
@@ -179,7 +184,6 @@ export class TimeChart extends View {
       this.ring(at[0], at[1], 5, colour, 2.5);
       this.tag({ id: `found ${colour}`, text, at, colour, rank: 1 });
     }
-    const present = this.x(now);
     this.line([[present, PAD.top - 6], [present, bottom]], theme.ink);
     this.dot(present, bottom, 6, theme.ink);
     this.avoidLine([present, PAD.top], [present, bottom]);
@@ -251,8 +255,11 @@ export class TimeChart extends View {
   /** Ticks from the top down, one for each column of pixels in which there are resets, and how many there are. */
   drawResets({ times, colour, text }, row, right) {
     const { context: pen } = this;
-    const columns = new Set(Array.from(times, (time) => Math.round(this.x(time))));
-    const seen = [...columns].filter((x) => x >= PAD.left && x <= right);
+    const seen = [];
+    for (const time of times) {
+      const x = Math.round(this.x(time));
+      if (x >= PAD.left && x <= right && x !== seen.at(-1)) seen.push(x);
+    }
     pen.fillStyle = colour;
     for (const x of seen) pen.fillRect(x, PAD.top, 1, RESET);
     const at = [seen[0], PAD.top + RESET + 1 + ROW * row];
@@ -360,17 +367,52 @@ function readingAt(lines, time, unit) {
   return told.join(", ");
 }
 
+/** Points of a path, without those that lie on the way from one to the next: a page pays for each. */
+class Way {
+  /** The last two points: the first was drawn, the second waits for the next. */
+  drawn = [NaN, NaN];
+  waiting = /** @type {number[] | null} */ (null);
+
+  constructor(pen) {
+    this.pen = pen;
+  }
+
+  begin(x, y) {
+    this.pen.moveTo(x, y);
+    this.drawn = [x, y];
+  }
+
+  to(x, y) {
+    const { drawn: [u, v], waiting } = this;
+    if (waiting) {
+      const [x1, y1] = waiting;
+      const off = y1 - (v + ((y - v) * (x1 - u)) / (x - u));
+      if (!(x - u < APART && Math.abs(off) < OFF)) this.end();
+    }
+    this.waiting = [x, y];
+  }
+
+  end() {
+    if (!this.waiting) return;
+    const [x, y] = this.waiting;
+    this.pen.lineTo(x, y);
+    this.drawn = this.waiting;
+    this.waiting = null;
+  }
+}
+
 /** One path, with gaps where values are not numbers; of each pixel column the first, least, greatest and last. */
 function trace(pen, chart, time, values) {
   const [from, to] = [sampleAt(time, chart.span.low), Math.min(sampleAt(time, chart.span.high) + 1, time.length - 1)];
+  const way = new Way(pen);
   let [column, first, least, greatest, last, at, before] = [NaN, 0, 0, 0, 0, 0, NaN];
   const flush = () => {
     if (Number.isNaN(column)) return;
-    if (Number.isNaN(before)) pen.moveTo(at, chart.y(first));
-    else pen.lineTo(at, chart.y(first));
-    if (least < first && least < last) pen.lineTo(at, chart.y(least));
-    if (greatest > first && greatest > last) pen.lineTo(at, chart.y(greatest));
-    if (last !== first) pen.lineTo(at, chart.y(last));
+    if (Number.isNaN(before)) way.begin(at, chart.y(first));
+    else way.to(at, chart.y(first));
+    if (least < first && least < last) way.to(at, chart.y(least));
+    if (greatest > first && greatest > last) way.to(at, chart.y(greatest));
+    if (last !== first) way.to(at, chart.y(last));
     before = last;
     column = NaN;
   };
@@ -380,6 +422,7 @@ function trace(pen, chart, time, values) {
     const value = values[k];
     if (!(value - value === 0)) {
       flush();
+      way.end();
       before = NaN;
       continue;
     }
@@ -396,6 +439,7 @@ function trace(pen, chart, time, values) {
     last = value;
   }
   flush();
+  way.end();
 }
 
 /** The value that a note points at: its own, or a sample of the kept run or of the estimate. */

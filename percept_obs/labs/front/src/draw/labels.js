@@ -1,7 +1,6 @@
 // A picture whose texts never overlap and are never cut: labels look for a free place, and the least important one goes
 // where there is none.
 
-import { same } from "../state/settings.js";
 import { Picture } from "./canvas.js";
 
 /** Places around a thing, and how far off a label looks for one; from the second on with a leader to its thing. */
@@ -110,32 +109,48 @@ export class LabelledPicture extends Picture {
     for (const label of labels) this.put(label);
   }
 
-  /** Places of a label, the best first, each with a number of its own. */
-  spotsOf(/** @type {Label} */ { at, along = [], gap = 9, towards }, half) {
+  /** Numbers of the places of a label, the best first. */
+  *spotsOf(/** @type {Label} */ { along = [], towards }) {
     const [ahead, down] = towards ?? [0, 0];
-    const part = (/** @type {number[]} */ [u, v]) => (u * ahead + v * down) / Math.hypot(u, v);
-    const sides = towards ? [...SIDES].sort((one, other) => part(other) - part(one)) : SIDES;
-    const keyOf = (off, side, k) =>
-      OFF.length * (SIDES.length * k + SIDES.findIndex((each) => same(each, side))) + OFF.indexOf(off);
-    return OFF.flatMap((off) =>
-      sides.flatMap(([u, v]) =>
-        [at, ...along].map(([x, y], k) => {
-          const across = (gap + off + half + 3) * (u && v ? 0.9 : 1);
-          const spot = [x + u * across, y + v * (gap + off + HALF + 1)];
-          return { key: keyOf(off, [u, v], k), off, from: [x, y], at: spot };
-        }),
-      ),
-    );
+    const part = (/** @type {number} */ side) => {
+      const [u, v] = SIDES[side];
+      return (u * ahead + v * down) / Math.hypot(u, v);
+    };
+    const sides = SIDES.map((_, side) => side);
+    if (towards) sides.sort((one, other) => part(other) - part(one));
+    for (let off = 0; off < OFF.length; off++)
+      for (const side of sides)
+        for (let k = 0; k <= along.length; k++) yield OFF.length * (SIDES.length * k + side) + off;
+  }
+
+  /** The place of a label with this number: what it names there, how far off it is, and its middle. */
+  spot(/** @type {Label} */ { at, along = [], gap = 9 }, key, half) {
+    const [place, off] = [Math.floor(key / OFF.length), OFF[key % OFF.length]];
+    const [u, v] = SIDES[place % SIDES.length];
+    const k = Math.floor(place / SIDES.length);
+    const from = k ? along[k - 1] : at;
+    const across = (gap + off + half + 3) * (u && v ? 0.9 : 1);
+    const middle = from && [from[0] + u * across, from[1] + v * (gap + off + HALF + 1)];
+    return { key, off, from, at: middle };
   }
 
   put(/** @type {Label} */ label) {
     const { id, text, colour, gap = 9 } = label;
     const half = this.context.measureText(text).width / 2;
-    const spots = this.spotsOf(label, half);
     const boxOf = (/** @type {any} */ { at: [cx, cy] }) => [cx - half - 2, cy - HALF, cx + half + 2, cy + HALF];
-    const free = (spot) => !this.cut(boxOf(spot)) && !this.taken.some((other) => meet(boxOf(spot), other));
-    const before = spots.find(({ key }) => key === this.places.get(id));
-    const spot = before && free(before) ? before : spots.find(free);
+    const isFree = (spot) => {
+      if (!spot.from) return false;
+      const box = boxOf(spot);
+      return !this.cut(box) && !this.taken.some((other) => meet(box, other));
+    };
+    let spot = /** @type {any} */ (null);
+    const before = this.places.get(id);
+    for (const key of before === undefined ? this.spotsOf(label) : [before, ...this.spotsOf(label)]) {
+      const one = this.spot(label, key, half);
+      if (!isFree(one)) continue;
+      spot = one;
+      break;
+    }
     if (!spot) {
       this.places.delete(id);
       return;

@@ -7,13 +7,18 @@ const MOST_LINES = 500;
 export function drawGround(view, [cx, cz, scale], { x, y }, theme) {
   const { width, height } = view;
   const step = [0.1, 1, 5, 10, 50, 100, 1000].find((m) => m * scale >= 9) ?? 10 ** Math.ceil(Math.log10(9 / scale));
-  const line = (from, to, k) => view.line([from, to], theme.line, { width: 1, alpha: k % 5 ? 0.18 : 0.5 });
   const about = (/** @type {number} */ middle, /** @type {number} */ reach) => {
     const first = Math.ceil((middle - reach) / step);
     return Array.from({ length: Math.min(Math.ceil((2 * reach) / step), MOST_LINES) }, (_, k) => first + k);
   };
-  for (const k of about(cx, width / scale)) line([x(k * step), 0], [x(k * step), height], k);
-  for (const k of about(cz, height / scale)) line([0, y(k * step)], [width, y(k * step)], k);
+  const lines = [
+    ...about(cx, (0.6 * width) / scale).map((k) => ({ k, ends: [[x(k * step), 0], [x(k * step), height]] })),
+    ...about(cz, (0.6 * height) / scale).map((k) => ({ k, ends: [[0, y(k * step)], [width, y(k * step)]] })),
+  ];
+  for (const [alpha, fifth] of /** @type {[number, boolean][]} */ ([[0.18, false], [0.5, true]])) {
+    const some = lines.filter(({ k }) => (k % 5 === 0) === fifth);
+    view.line(some.flatMap(({ ends }) => [...ends, [NaN, NaN]]), theme.line, { width: 1, alpha });
+  }
 }
 
 /** A camera from above, turned from straight ahead. */

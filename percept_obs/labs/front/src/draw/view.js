@@ -2,7 +2,7 @@
 
 import { element } from "./dom.js";
 import { LabelledPicture, meet, RIM } from "./labels.js";
-import { arrowMark, disc, ring, stroke } from "./marks.js";
+import { arrowMark, disc, ring } from "./marks.js";
 
 /** Milliseconds in which a view comes most of the way to where it should be. */
 const GLIDE = 90;
@@ -77,7 +77,12 @@ export class View extends LabelledPicture {
     pen.fillRect(0, 0, width, height);
     pen.globalAlpha = 0.3;
     pen.lineWidth = 1.2;
-    for (let x = -height; x < width; x += HATCH) stroke(pen, [x, height], [x + height, 0]);
+    pen.beginPath();
+    for (let x = -height; x < width; x += HATCH) {
+      pen.moveTo(x, height);
+      pen.lineTo(x + height, 0);
+    }
+    pen.stroke();
     pen.restore();
   }
 

@@ -2,6 +2,7 @@
 
 import { linesOf } from "../../draw/lines.js";
 import { places, range, select } from "../../ui/controls.js";
+import { derived } from "../../engine/derived.js";
 import { indicesIn } from "../../engine/tables.js";
 import { between } from "../../engine/between.js";
 import { element } from "../../draw/dom.js";
@@ -29,16 +30,15 @@ export function chartOf(screen, scene) {
   const distances = (result, rows) => distancesOf(screen.lab.kernels, result, rows);
   const actual = truth?.length ? distances(shown, truth) : null;
   const lines = linesOf(scene, (result, { estimate }) => distances(result, estimate), () => actual);
-  const inSight = (values) => Array.from(values.subarray(from, to + 1)).filter(Number.isFinite);
-  const found = lines.filter(({ id }) => id !== "true" && id !== "kept").map(({ values }) => inSight(values));
-  const most = actual ? inSight(actual).reduce((high, value) => Math.max(high, value), 0) : median(found.at(-1)) * 2;
-  const near = found.flatMap((values) => values.filter((value) => value < 1.5 * most));
+  const own = lines.filter(({ id }) => id !== "true" && id !== "kept");
+  const found = own.map(({ values }) => values.subarray(from, to + 1));
+  const most = actual ? greatest(actual.subarray(from, to + 1)) : median(found.at(-1)) * 2;
   const since = actual ? time[0] + courseOf(screen.lab.kernels, shown, chosen).found : Infinity;
   const told = since > time[0] && (secret ? since <= now : since < Infinity);
   const value = told ? distances(shown, chosen.estimate)[between(time, since).sample] : 0;
   const text = `within ${percent(shown.tolerance, 6)} from ${since.toFixed(1)} s`;
   return {
-    scale: { low: 0, high: 1.2 * near.reduce((high, each) => Math.max(high, each), most) },
+    scale: { low: 0, high: 1.2 * Math.max(most, ...found.map((values) => greatest(values, 1.5 * most))) },
     unit: "m",
     lines: [
       ...lines,
@@ -52,12 +52,14 @@ export function chartOf(screen, scene) {
 
 /** Times in which what is measured moves too little with the distance. */
 export function unseenSpans(shown) {
-  const { time, truth, foe, measured } = shown;
-  const radius = radiusOf(shown);
-  if (!truth?.length || !foe || !radius) return [];
-  const text = `${measured.length > 1 ? "" : measured[0] ? "row " : "column "}too near the focus`;
-  const spans = spansOf(time, (k) => measuredApart(truth, k, foe, measured, shown.radius) < radius);
-  return spans.map(([begin, end]) => ({ begin, end, text }));
+  return derived(shown, "unseen", () => {
+    const { time, truth, foe, measured } = shown;
+    const radius = radiusOf(shown);
+    if (!truth?.length || !foe || !radius) return [];
+    const text = `${measured.length > 1 ? "" : measured[0] ? "row " : "column "}too near the focus`;
+    const spans = spansOf(time, (k) => measuredApart(truth, k, foe, measured, shown.radius) < radius);
+    return spans.map(([begin, end]) => ({ begin, end, text }));
+  });
 }
 
 export function sentence(screen, scene) {
@@ -139,7 +141,9 @@ export function radiusOf({ circle, settings }, size = 0) {
 
 /** Distance in the image from the focus of expansion, as far as it is measured, and the size if that is. */
 function measuredApart(truth, k, foe, measured, radius) {
-  return Math.hypot(radius * truth[3 * k + 2], ...measured.map((c) => truth[3 * k + c] - foe[c]));
+  let square = (radius * truth[3 * k + 2]) ** 2;
+  for (const c of measured) square += (truth[3 * k + c] - foe[c]) ** 2;
+  return Math.sqrt(square);
 }
 
 /** First and last time of each part in which a condition holds. */
@@ -165,6 +169,13 @@ export function claimed(ray, inverse, deviation) {
   }
   const digits = half < 0.01 ? 3 : 2;
   return `${distance.toFixed(digits)} ± ${Math.max(half, 0.001).toFixed(digits)} m`;
+}
+
+/** The greatest of the values below a limit, or 0. */
+function greatest(values, limit = Infinity) {
+  let high = 0;
+  for (const value of values) if (value > high && value < limit) high = value;
+  return high;
 }
 
 function median(values) {

@@ -11,6 +11,11 @@ import { placesOf } from "./place.js";
 import { HERE } from "./image.js";
 import { metres } from "./told.js";
 
+/** Parts of a run whose ends the map holds. */
+const GOAL = 20;
+/** Most samples at which the past of an estimate is drawn. */
+const PAST = 100;
+
 export function drawWorld(screen, scene, motion, note) {
   const { world: view, seen } = screen;
   const { shown, theme, now, why, ghost } = scene;
@@ -54,10 +59,12 @@ export function drawWorld(screen, scene, motion, note) {
   view.line([camera, ray], theme.ink, { alpha: 0.75 });
   view.avoidLine(camera, ray);
   drawTicks(view, seen, on, camera, ray, reach, theme, why);
-  const past = (rows) => pastOf(screen, scene, rows).map(on);
+  const samples = pastSamples(scene);
+  const maps = samples.map((k) => seen.toWorld?.(shown.time[k]));
+  const past = (rows) => pastOf(screen, shown, rows, samples, maps).map(on);
   const colour = theme.lines[seen.run.order];
   if (seen.toWorld) {
-    const way = timesTo(scene).map((time) => on(apply(seen.toWorld(time), [0, 0, 0])));
+    const way = maps.map((map) => on(apply(map, [0, 0, 0])));
     view.line(way, theme.ink, { width: 2, alpha: 0.35 });
     drawBelieved(screen, view, scene, on, colour, way[0]);
   } else if (shown.truth?.length) view.line(past(shown.truth), theme.ink, { width: 1, alpha: 0.35 });
@@ -104,19 +111,21 @@ function timesTo({ shown, now }) {
   return Array.from({ length: count + 1 }, (_, k) => first + ((now - first) * k) / count);
 }
 
-/** Where rows of states were in the world, up to the present. */
-function pastOf(screen, { shown, now }, rows) {
-  const { time, width } = shown;
-  const { toWorld } = screen.seen;
-  const placeOf = placesOf(screen.lab, shown);
-  const every = Math.max(1, Math.floor(time.length / 300));
-  const found = [];
-  for (let k = 0; k < time.length && time[k] <= now; k += every) {
-    const state = [0, 1, 2].map((c) => rows[width * k + c]);
-    const place = state[2] > 1e-4 ? placeOf(state) : [NaN, NaN, NaN];
-    found.push(toWorld ? apply(toWorld(time[k]), place) : place);
-  }
-  return found;
+/** Samples up to the present at which the past of states is drawn. */
+function pastSamples({ shown: { time }, now }) {
+  const [, last] = indicesIn(time, { low: time[0], high: now });
+  const every = Math.ceil((last + 1) / PAST);
+  return Array.from({ length: Math.floor(last / every) + 1 }, (_, j) => every * j);
+}
+
+/** Where rows of states were in the world at these samples. */
+function pastOf(screen, { width }, rows, samples, maps) {
+  const placeOf = placesOf(screen.lab, screen.lab.shown);
+  return samples.map((k, j) => {
+    if (!(rows[width * k + 2] > 1e-4)) return [NaN, NaN, NaN];
+    const place = placeOf([rows[width * k], rows[width * k + 1], rows[width * k + 2]]);
+    return maps[j] ? apply(maps[j], place) : place;
+  });
 }
 
 function worldGoal(screen, scene, { toWorld, inWorld, place }) {
@@ -132,15 +141,15 @@ function worldGoal(screen, scene, { toWorld, inWorld, place }) {
     [box[2], box[3]] = [Math.min(box[2], z), Math.max(box[3], z)];
   };
   const rows = truth?.length ? truth : chosen.estimate;
-  for (let k = 0; k <= 40; k++) {
-    const sample = Math.round(from + (k * (to - from)) / 40);
+  for (let k = 0; k <= GOAL; k++) {
+    const sample = Math.round(from + (k * (to - from)) / GOAL);
     const map = toWorld?.(time[sample]);
     const there = (where) => (map ? apply(map, where) : where);
     const stateOf = (table) => [0, 1, 2].map((c) => table[width * sample + c]);
     take(there([0, 0, 0]));
     take(there(placeOf(stateOf(rows))));
     const first = stateOf(chosen.estimate);
-    if ((k === 0 || k === 40) && first[2] > 0 && 1 / first[2] < 1.6 / stateOf(rows)[2]) take(there(placeOf(first)));
+    if ((k === 0 || k === GOAL) && first[2] > 0 && 1 / first[2] < 1.6 / stateOf(rows)[2]) take(there(placeOf(first)));
   }
   if (why) take(inWorld(place.map((value) => 2 * value)));
   if (settings.believed && toWorld) {
