@@ -8,7 +8,6 @@ import { moduleText } from "../src/engine/modules.js";
 import { constantPath } from "../src/engine/path.js";
 import { Memory } from "../src/engine/memory.js";
 import { serve } from "../src/engine/serving.js";
-import { thinned } from "../src/engine/thinned.js";
 import { entriesOf, textsOfP } from "../src/labs/points/sparse.js";
 import { loadHere } from "./load_here.js";
 
@@ -24,19 +23,18 @@ function asking() {
 test("while one task is under way only the latest of the others waits", () => {
   const { latest, tasks, told } = asking();
   const [first, second, third] = [1, 2, 3].map((gain) => ({ gain, kept: null }));
-  const sight = { low: 0, high: 1, cursor: null };
-  assert.equal(latest.want(first, false, sight), false);
-  assert.equal(latest.want(second, false, sight), false);
-  assert.equal(latest.want(third, false, sight), false);
-  assert.deepEqual(tasks, [{ settings: first, whole: false, sight }]);
+  assert.equal(latest.want(first, false), false);
+  assert.equal(latest.want(second, false), false);
+  assert.equal(latest.want(third, false), false);
+  assert.deepEqual(tasks, [{ settings: first, whole: false }]);
   latest.take({ shown: { whole: false, value: 1 }, ghost: null });
   assert.equal(latest.shown.settings, first);
-  assert.deepEqual(tasks[1], { settings: third, whole: false, sight });
+  assert.deepEqual(tasks[1], { settings: third, whole: false });
   latest.take({ shown: { whole: false, value: 3 } });
   assert.equal(latest.shown.settings, third);
   assert.equal(latest.want(third, false), true);
   assert.equal(latest.want(third, true), false);
-  assert.deepEqual(tasks[2], { settings: third, whole: true, sight: undefined });
+  assert.deepEqual(tasks[2], { settings: third, whole: true });
   assert.equal(latest.want(third, false), true);
   assert.deepEqual(told, [undefined, undefined]);
 });
@@ -67,56 +65,6 @@ test("when nobody is left beside the page, it computes by itself and nobody wait
   await next;
   assert.equal(latest.want(settings, true), true);
   assert.equal(latest.shown.here, true);
-});
-
-test("while a hand moves fewer samples are drawn: of those in sight most, each as it is at rest, and whatever " +
-  "alternates is seen", () => {
-  const count = 9001;
-  const time = Float64Array.from({ length: count }, (_, k) => 0.01 * k);
-  const alternating = Float64Array.from(time, (_, k) => (k % 2 ? 1 : -1));
-  const estimate = Float64Array.from({ length: 18 * count }, (_, k) => k);
-  const resets = time.slice();
-  const result = {
-    settings: { error: [0] },
-    time,
-    runs: [{ estimate, error: alternating, resets }],
-    errors: [alternating],
-    excitation: { time, smallest: time },
-    bound: null,
-    whole: true,
-  };
-  for (const sight of [
-    { low: 0, high: 90, cursor: 33.335 },
-    { low: 20, high: 28, cursor: 21 },
-  ]) {
-    const found = thinned(result, sight);
-    const [run] = found.runs;
-    const at = Array.from(found.time, (value) => Math.round(100 * value));
-    assert.equal(found.whole, false);
-    assert.ok(at.length < 0.5 * count && at.every((k, j) => j === 0 || k > at[j - 1]));
-    assert.deepEqual([at[0], at.at(-1)], [0, count - 1]);
-    assert.ok(at.includes(Math.floor(100 * sight.cursor)));
-    at.forEach((k, j) =>
-      assert.deepEqual(
-        [found.time[j], run.error[j], run.estimate[18 * j], run.estimate[18 * j + 17]],
-        [time[k], alternating[k], 18 * k, 18 * k + 17],
-      ),
-    );
-    assert.equal(found.errors[0], run.error);
-    assert.deepEqual(
-      [run.resets, found.excitation.time, found.excitation.smallest, found.settings, found.bound],
-      [resets, time, time, result.settings, null],
-    );
-    const even = run.error.filter((value) => value < 0).length / at.length;
-    assert.ok(even > 0.4 && even < 0.6, `${even} of the samples are even`);
-    const gaps = at
-      .slice(1)
-      .map((k, j) => [at[j], k - at[j]])
-      .filter(([k]) => time[k] >= sight.low && time[k] < sight.high);
-    assert.ok(Math.max(...gaps.map(([, gap]) => gap)) <= (sight.low ? 1 : 12));
-  }
-  const few = { time: time.subarray(0, 300), whole: true };
-  assert.equal(thinned(few, { low: 0, high: 3, cursor: null }), few);
 });
 
 /** A worker's side that is spoken to as a page would, with copies; it gives all that it has answered. */

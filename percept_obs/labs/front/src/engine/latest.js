@@ -1,8 +1,7 @@
 // @ts-check
 // The latest result of settings that a hand moves: found here, or in a worker, where one task at a time is under way.
 
-/** @typedef {import("./thinned.js").Sight} Sight */
-/** @typedef {{settings: any, whole: boolean, sight?: Sight}} Task  whose whole result is wanted, or what is in sight */
+/** @typedef {{settings: any, whole: boolean}} Task  whose result is wanted, whole or as far as it is always drawn */
 
 /** The latest result.  Once there is a worker, of all tasks that wait only the latest is sent. */
 export class Latest {
@@ -29,11 +28,11 @@ export class Latest {
   }
 
   /** Find what is shown of settings, and say whether it is there; if it is not, `onFound` is called when it is. */
-  want(settings, whole, /** @type {Sight | undefined} */ sight = undefined) {
-    const task = { settings, whole, sight };
+  want(settings, whole) {
+    const task = { settings, whole };
     if (this.has(task)) return true;
     if (!this.beside) {
-      Object.assign(this, this.results.of(settings, whole || Boolean(sight?.complete)));
+      Object.assign(this, this.results.of(settings, whole));
       return true;
     }
     const { asked, waiting } = this;

@@ -4,11 +4,10 @@
 import { same } from "../state/settings.js";
 import { modelOf } from "../state/texts.js";
 import { Results } from "./results.js";
-import { thinned } from "./thinned.js";
 
 /**
  * Answer messages in a worker: the first one opens a lab, of which `computing` gives the classes by its kind; each of
- * the others has settings, and is answered by their result: all of it, or as much as is drawn while a hand moves.
+ * the others has settings, and is answered by their result: whole, or as much as is drawn while a hand moves.
  */
 export function serve(computing, scope) {
   /** @type {any} */
@@ -30,16 +29,15 @@ function answering(model, kernels, makeEngine, scope) {
   // No ghost yet, so that the first answer has one: the page may have found one by itself.
   /** @type {{settings: any, kept: any, ghost: any}} */
   const last = { settings: null, kept: null, ghost: undefined };
-  return async ({ settings: copy, whole, sight, written }) => {
+  return async ({ settings: copy, whole, written }) => {
     Object.assign((model.written ??= {}), written);
     // Messages are copies; what is known already is found by the very object.
     const settings = same(copy, last.settings) ? last.settings : copy;
     if (same(settings.kept, last.kept)) settings.kept = last.kept;
     Object.assign(last, { settings, kept: settings.kept });
     await Promise.all([settings, settings.kept].filter(Boolean).map((each) => kernels.prepare(each)));
-    const { shown, ghost } = results.of(settings, whole || Boolean(sight?.complete));
-    const drawn = whole ? shown : thinned(shown, sight);
-    scope.postMessage({ shown: { ...drawn, settings: null }, ...(ghost !== last.ghost && { ghost }) });
+    const { shown, ghost } = results.of(settings, whole);
+    scope.postMessage({ shown: { ...shown, settings: null }, ...(ghost !== last.ghost && { ghost }) });
     last.ghost = ghost;
   };
 }

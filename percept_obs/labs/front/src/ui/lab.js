@@ -370,14 +370,12 @@ export class Lab extends LabBase {
 
   /** Ask for the result of the present settings; return true if it is there. */
   compute() {
-    const { settings, span, state } = this;
+    const { settings, state: { view } } = this;
     if (!this.wanted(settings).every((s) => this.kernels.of(s))) {
       this.wait(settings);
       return false;
     }
-    const whole = Boolean(state.view.more) && this.speaking;
-    const complete = state.view.charts.length > 0;
-    return this.latest.want(settings, whole, { ...span, cursor: state.cursor, complete });
+    return this.latest.want(settings, view.charts.length > 0 || (Boolean(view.more) && this.speaking));
   }
 
   /** Draw once the functions of settings are there. */
