@@ -25,8 +25,7 @@ from percept_obs.compile.integrator import EACH
 from percept_obs.compile.machine_code import NotKept
 from percept_obs.compile.rows import by_row
 from percept_obs.figures import look
-from percept_obs.labs.desk import tables
-from percept_obs.labs.printing import INTEGRATOR, LOOKS, MODELS, READER, models
+from percept_obs.labs.printing import INTEGRATOR, LOOKS, MODELS, models
 from percept_obs.observers import OBSERVERS, linear_approximation
 from percept_obs.points import kernel as points_kernel
 
@@ -294,7 +293,7 @@ def test_machine_code_that_was_cut_off_is_told_and_mended(tmp_path, monkeypatch,
 
 @pytest.mark.parametrize(
     ("file", "printed"),
-    [(INTEGRATOR, integrator.for_the_page), (LOOKS, look.for_the_page), (READER, tables.reader), (MODELS, models)],
+    [(INTEGRATOR, integrator.for_the_page), (LOOKS, look.for_the_page), (MODELS, models)],
 )
 def test_the_page_steps_by_the_same_method_and_draws_by_the_same_marks(file, printed):
     there = file.read_text(encoding="utf-8")

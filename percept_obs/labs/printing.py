@@ -6,7 +6,6 @@ from types import MappingProxyType
 
 from percept_obs.compile import integrator
 from percept_obs.figures import look
-from percept_obs.labs.desk import tables
 from percept_obs.labs.desk import texts as desk
 from percept_obs.labs.observer import texts as observer
 from percept_obs.labs.observer.lab import observer_lab
@@ -28,9 +27,7 @@ LABS: Mapping[str, Callable[[], Parts]] = MappingProxyType(
 
 INTEGRATOR = FRONT / "src/engine/integrator.js"
 LOOKS = FRONT / "src/draw/looks.js"
-READER = FRONT / "src/labs/desk/model/printed.js"
-"""The method of the loops, the marks of all pictures and the reader of formulas, in the page's sources, from which the
-bundle is built."""
+"""The method of the loops and the marks of all pictures, in the page's sources, from which the bundle is built."""
 
 MODELS = FRONT / "tests/models.json"
 """What Python hands to the labs as they open, for the tests of the page."""
@@ -62,7 +59,6 @@ def main() -> None:
     if INTEGRATOR.parent.exists():
         INTEGRATOR.write_text(integrator.for_the_page(), encoding="utf-8")
         LOOKS.write_text(look.for_the_page(), encoding="utf-8")
-        READER.write_text(tables.reader(), encoding="utf-8")
         MODELS.write_text(models(), encoding="utf-8")
     for kind, print_texts in LABS.items():
         file = file_of(kind)

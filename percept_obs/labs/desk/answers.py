@@ -1,4 +1,4 @@
-"""Answers of the desk to a sheet: verdicts and hints; lines as mathematics and arrows are the page's own."""
+"""Answers of the desk to a sheet: verdicts and hints; pictures and mathematics are the page's own, of plain lines."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ import sympy as sp
 
 from percept_obs.checking import CannotRead, Review, Verdict
 from percept_obs.checking.differences import compared
-from percept_obs.checking.explaining import sentences
+from percept_obs.checking.explaining import plain, sentences
 from percept_obs.checking.matching import Judged, judged
 from percept_obs.checking.reading import Reading
 from percept_obs.checking.review import CANNOT_BE_TOLD
+from percept_obs.compile import in_letters
 from percept_obs.labs.desk.sheets import Sheet
 from percept_obs.labs.shared.markup import markup
 from percept_obs.labs.shared.schema import Settings
@@ -23,7 +24,8 @@ from percept_obs.labs.shared.schema import Settings
 Words = list[dict[str, str]]
 """A sentence in pieces of text and of MathML."""
 
-HINTS = ("which line", "which term", "which slip", "which step")
+HINTS = ("Show the wrong line", "Mark the wrong term", "Say what is wrong", "Say in which step")
+"""What each hint does, as its button says it."""
 MARKS = {
     Verdict.RIGHT: "right",
     Verdict.CONVENTION: "right",
@@ -33,7 +35,7 @@ MARKS = {
 }
 
 
-SAID = {
+SAID: dict[str, Any] = {
     "begun": "Right so far: a term is missing.",
     "begun many": "Right so far: {count} terms are missing.",
     "wrong": "Not right yet.",
@@ -44,7 +46,28 @@ SAID = {
     "unknown": CANNOT_BE_TOLD,
     "right": "Right{notes}.",
     "right so far": "Right so far, {count} of {asked} lines{notes}.",
-    "alone": "Python names the slip: open the desk in a notebook.",
+    "python": "Python reads this: open the desk in a notebook",
+    "unfinished": "something is missing at the end",
+    "slips": {
+        "sign": "the sign of {term} is turned",
+        "factor": "{term} is {times} times what it should be",
+        "other": "{term} does not belong here: look at its letters, and at their powers",
+    },
+    "says": {
+        "opening": "How does the image move? Watch a line being derived.",
+        "growing": "Each right term brings the blue arrow nearer to the true one.",
+        "place": "Where does distance drop out of the motion? A ring shows the place that you type.",
+        "empty": "Type what you derive: a blue arrow shows the motion that it means.",
+        "lines": "Type the lines of this step, one after the other.",
+        "agreed": "Right, here and everywhere: both arrows are one. Type the next line.",
+        "calm": "Go on: what is not right is told when you pause.",
+        "unread": "A line cannot be read: the place is marked.",
+        "next": "Go on to the next step.",
+        "last": "This is the last step.",
+        "hidden": "Here the slip hides: the arrows agree.",
+        "marked": "Mend the marked term.",
+        "hints": "Hints open one by one.",
+    },
     "unknown system": "Only Python derives this system: open the desk in a notebook, or clear the name.",
     "one formula": "one formula is asked for here, without other equations or relations",
     "other line": "this is the line for {name}; type its right side only",
@@ -220,6 +243,6 @@ def _line(sheet: Sheet, row: int, texts: Mapping[int, str], hinted: Mapping[int,
     """Return the answer to a line."""
     entry = entry_of(sheet, row, texts[row]) if row in texts else Entry()
     if entry.reading:
-        return hinted[row]
+        return {**hinted[row], "plain": plain(in_letters(entry.reading.formula))}
     told = {"refusal": entry.refusal, "position": entry.position} if entry.refusal else {}
     return {"mark": "", "told": []} | told

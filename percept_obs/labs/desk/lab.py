@@ -8,7 +8,7 @@ from typing import Any
 import traitlets
 
 from percept_obs.labs.desk.answers import answer_to
-from percept_obs.labs.desk.settings import EXAMPLE, SCHEMA
+from percept_obs.labs.desk.settings import EXAMPLE, LOOKS, SCHEMA
 from percept_obs.labs.desk.sheets import PARTS, Sheet, sheet_of
 from percept_obs.labs.desk.systems import system_of, system_of_student
 from percept_obs.labs.desk.texts import sheet_for_the_page, sheet_name
@@ -46,6 +46,7 @@ class DerivationDesk(Lab):
     """
 
     schema = SCHEMA
+    looks = LOOKS
     title = "The derivation desk"
     sheets = traitlets.Dict(help="Sheets of a system that the package does not print, by their names.").tag(sync=True)
 
@@ -53,7 +54,7 @@ class DerivationDesk(Lab):
     def __init__(self, system: PerspectiveSystem | None = None, /, **settings: Any) -> None:
         self._given = system
         opening, given = SCHEMA.opening, None
-        if system is None and not set(settings) - {"face"}:
+        if system is None and set(settings) <= set(self.looks):
             opening |= EXAMPLE
         if system is not None:
             given = {"outputs": [list(names) for names in system.output_choices]}

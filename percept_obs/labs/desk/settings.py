@@ -4,7 +4,7 @@ from typing import Any
 
 from percept_obs.labs.desk.answers import HINTS
 from percept_obs.labs.desk.sheets import PARTS
-from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS
+from percept_obs.labs.desk.systems import INVERSE, MOTIONS, OBSERVERS
 from percept_obs.labs.shared.schema import Choice, Entries, Names, Number, Row, Schema, Text
 from percept_obs.labs.shared.surfaces import SURFACES
 
@@ -26,15 +26,19 @@ SCHEMA = Schema(
     point=Row(
         [
             *(Number(value, label=label, **_PLACE) for label, value in (("y1", 0.4), ("y2", 0.3))),
-            Number(0.5, 0.01, 100, (0.05, 2), label="inverse distance", unit="1/m"),
+            Number(INVERSE, 0.01, 100, (0.05, 2), label="inverse distance", unit="1/m"),
         ],
         about="where numbers are put in: y1, y2 and the inverse distance",
     ),
 )
 
+LOOKS = Schema(more=Choice("", ("", "choices"), about="whether the drawer is open: choices, or empty"))
+"""What can be looked at."""
+
 EXAMPLE: dict[str, Any] = {
     "step": 6,
-    "point": [-0.5, -0.3, 1.0],
+    "point": [-0.6, 0.6, INVERSE],
+    "hints": {"rate 6": 2},
     "typed": {"rate 6 y1'": "a13 + (a11 - a33) y1 + a12 y2 - a31 y1^2 - a32 y1 y2 + (b1 + b3 y1) y3"},
 }
-"""Settings of a desk that is given none, where they differ: a line with a slip in its last term."""
+"""Settings of a desk that is given none, where they differ: a line with a slip in its last term, which is marked."""

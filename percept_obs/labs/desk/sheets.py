@@ -17,6 +17,7 @@ from percept_obs.labs.desk.systems import OBSERVERS, observer_of
 from percept_obs.labs.shared.equations import equations_of
 from percept_obs.labs.shared.markup import dotted, formula, markup, row, words
 from percept_obs.system.derivation import Derivation, Step, rates
+from percept_obs.system.motion import Motion, affine
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT
 
@@ -97,12 +98,19 @@ def _rate(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) ->
     # what is only written in another form is asked for once
     kept = steps[:1] + [step for before, step in pairwise(steps) if list(step.values) != list(before.values)]
     given = [
-        formula(dotted(sp.Matrix(POINT)), sp.MatAdd(sp.MatMul(system.motion.A, sp.Matrix(POINT)), system.motion.b)),
+        _moving(system.motion),
         row(*_listed(formula(sp.Symbol(name), e) for name, e in seen.items())),
         *_named_in(surface.ray),
     ]
     image = tuple(f"{s.name}'" for s in surface.image_coordinates)
     return _sheet(given, kept, target_of(system), image)
+
+
+def _moving(motion: Motion) -> str:
+    """Return the motion of a point; in short where all letters are free."""
+    if (motion.A, motion.b) == (affine().A, affine().b):
+        return f"<mrow>{dotted(sp.Symbol('𝐗'))}<mo>=</mo><mi>A</mi><mi>𝐗</mi><mo>+</mo><mi>b</mi></mrow>"
+    return formula(dotted(sp.Matrix(POINT)), sp.MatAdd(sp.MatMul(motion.A, sp.Matrix(POINT)), motion.b))
 
 
 def _form(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) -> Sheet:

@@ -1,13 +1,15 @@
 """Systems of the desk: of a motion and a surface, or from a student's name."""
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
+import numpy as np
 import sympy as sp
 
+from percept_obs.compile import Array, definitions, in_letters, vectorised
 from percept_obs.exercises.individual import same_name
 from percept_obs.labs.shared.surfaces import SURFACES
 from percept_obs.observers import Observer, de_luca, identifier_based, spica
@@ -17,6 +19,9 @@ from percept_obs.system.perspective import PerspectiveSystem
 MOTIONS = {make.__name__: make for make in (affine, rigid)}
 OBSERVERS = {make.key: make for make in (identifier_based, de_luca, spica)}
 """Observers whose equations can be typed in a line: those without a covariance and without branches."""
+
+INVERSE = 0.4
+"""Inverse distance at which the desk opens, in 1/m."""
 
 
 @lru_cache
@@ -85,9 +90,61 @@ def _rigid(drawn: _Draw) -> Motion:
     return rigid(camera_angular_velocity=turning, camera_velocity=camera, point_velocity=point)
 
 
-def number_of(symbol: sp.Symbol, system: PerspectiveSystem) -> float:
-    """Return the number of a letter: the system's, or one that follows from the letter's name."""
-    if symbol in system.values:
-        return system.values[symbol]
-    drawn = int.from_bytes(hashlib.sha256(symbol.name.encode()).digest()[:4], "big") / 2**32
-    return round((0.3 + 0.7 * (2 * drawn % 1)) * (1 if drawn < 0.5 else -1), 2)
+ROUNDS, DRAWS, SIDE = 8, 1000, np.linspace(-0.9, 0.9, 7)
+"""How often numbers are drawn, how many at once, and coordinates of the places in the image where motions are."""
+
+
+@lru_cache(maxsize=64)
+def numbers_of(system: PerspectiveSystem) -> dict[sp.Symbol, float]:
+    """Return numbers for the letters of a system, by which each term of the image's motion brings a line nearer.
+
+    What brings a line nearer takes it further away if its sign is wrong.  Of many draws the one is taken in which the
+    term that helps least helps most, in any order of the terms multiplied out; if there is no such draw, in the order
+    of the formula as it is printed.
+    """
+    letters = list(system.parameters)
+    gain = _gain_of(system, letters)
+    draw, best = np.random.default_rng(0), np.zeros(len(letters))
+    for k in range(ROUNDS):
+        size = draw.uniform(0.2, 1, (DRAWS, len(letters))) * draw.choice([-1, 1], (DRAWS, len(letters)))
+        drawn = np.where(draw.random(size.shape) < 0.2, size, best + 0.2 * size) if k else size
+        drawn[1:] = np.round(np.sign(drawn[1:]) * np.clip(np.abs(drawn[1:]), 0.1, 1.2), 2)
+        drawn[0] = best
+        for column, letter in enumerate(letters):
+            drawn[:, column] = system.values.get(letter, drawn[:, column])
+        best = drawn[np.argmax(gain(drawn))]
+    return dict(zip(letters, best.tolist(), strict=True))
+
+
+def _gain_of(system: PerspectiveSystem, letters: list[sp.Symbol]) -> Callable[[Array], Array]:
+    """Return what the least helpful term gains, of each draw; 1 and more if it does so in any order."""
+    names = [f"{s.name}'" for s in system.surface.image_coordinates]
+    derived = [step.values[name] for step in system.derivation() for name in names if name in step.values]
+    rates = [in_letters(rate) for rate in derived]
+    apart = [_sizes(sp.Add.make_args(sp.expand(rate)), system, letters) for rate in rates[: len(names)]]
+    printed = [_sizes(rate.as_ordered_terms(), system, letters) for rate in rates]
+
+    @np.errstate(all="ignore")
+    def gain(drawn: Array) -> Array:
+        free = np.min([_least(sizes(drawn), ordered=False) for sizes in apart], axis=0)
+        return np.where(free > 0, 1 + free, np.min([_least(sizes(drawn), ordered=True) for sizes in printed], axis=0))
+
+    return gain
+
+
+def _sizes(terms: Sequence[sp.Expr], system: PerspectiveSystem, letters: list[sp.Symbol]) -> Callable[[Array], Array]:
+    """Return a function of draws: of each term in each draw its values over the image."""
+    known = definitions(system.rate)
+    y1, y2 = (c.ravel() for c in np.meshgrid(SIDE, SIDE))
+    place = [y1, y2, np.full(y1.size, INVERSE)]
+    values = vectorised([*letters, *system.coordinates], [term.subs(known) for term in terms])
+    return lambda drawn: np.array(values(*(column[:, None] for column in drawn.T), *place))
+
+
+def _least(sizes: Array, ordered: bool) -> Array:
+    """Return the least gain by a term, as mean squares and as a part of all; -1 where it is no number."""
+    products = np.einsum("kdp,jdp->dkj", sizes, sizes)
+    against = np.triu(products, 1) if ordered else np.minimum(products - products * np.eye(len(sizes)), 0)
+    gained = np.einsum("dkk->dk", products) + 2 * against.sum(axis=2)
+    part = gained.min(axis=1) / (sizes.sum(axis=0) ** 2).sum(axis=1)
+    return np.asarray(np.nan_to_num(part, nan=-1, posinf=-1, neginf=-1))

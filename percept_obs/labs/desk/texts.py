@@ -1,4 +1,4 @@
-"""Texts with which the page reads and judges lines by itself: the grammar's tables, every system's sheets, words."""
+"""Texts with which the page judges plain lines by itself: every system's sheets, and words."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from percept_obs.checking.points import key
 from percept_obs.compile import in_letters
 from percept_obs.labs.desk.answers import HINTS, SAID
 from percept_obs.labs.desk.sheets import PARTS, Sheet, label_of, name_of, sheet_of
-from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, number_of, system_of
-from percept_obs.labs.desk.tables import GREEK, REFUSALS, tables
+from percept_obs.labs.desk.systems import MOTIONS, OBSERVERS, numbers_of, system_of
 from percept_obs.labs.shared.markup import markup
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.labs.shared.surfaces import SURFACES
@@ -22,7 +21,7 @@ from percept_obs.system.perspective import PerspectiveSystem
 
 
 def texts_for_the_page() -> Parts:
-    """Yield the choices that the page shows, what it reads formulas with, and all sheets, by their places."""
+    """Yield the choices that the page shows, and all sheets, by their places."""
     yield (
         "",
         {
@@ -30,12 +29,11 @@ def texts_for_the_page() -> Parts:
             "motions": list(MOTIONS),
             "observers": {name: make.name for name, make in OBSERVERS.items()},
             "parts": PARTS,
-            "said": SAID | {"refusals": REFUSALS, "hints": HINTS},
+            "said": SAID | {"hints": HINTS},
         },
     )
-    yield "reader/tables", tables()
     done: set[str] = set()
-    letters: Texts = {name: markup(sp.Symbol(name)) for name in GREEK}
+    letters: Texts = {}
     for motion, surface, part in product(MOTIONS, SURFACES, PARTS):
         system = system_of(motion, surface)
         for outputs, observer in product(system.output_choices, OBSERVERS):
@@ -45,7 +43,7 @@ def texts_for_the_page() -> Parts:
                 sheet = sheet_for_the_page(system, outputs, observer, part)
                 letters |= sheet.pop("markup", {})
                 yield f"sheets/{name}", sheet
-    yield "reader/letters", letters
+    yield "markup/letters", dict(sorted(letters.items()))
 
 
 def sheet_name(whose: str, outputs: Iterable[str], observer: str, part: str) -> str:
@@ -62,21 +60,19 @@ def sheet_for_the_page(system: PerspectiveSystem, outputs: tuple[str, ...], obse
     except ValueError as error:
         return title | {"problem": str(error)}
     goal = sheet.goal
-    letters, labels = goal.known
+    letters, _ = goal.known
     symbols = {name: getattr(each, "letter", each) for name, each in letters.items()}
     meant = {name: each.written_out for name, each in letters.items() if hasattr(each, "letter")}
     meant |= {key(symbol.name): value for symbol, value in goal.relations.items()}
     changes = [(c.words, {key(s.name): _text(e) for s, e in c.changes.items()}) for c in goal.conventions]
     return title | {
         "given": sheet.given,
-        "letters": [key(letter.name) for letter in sheet.letters],
         "known": sorted(symbols),
         "markup": {name: markup(symbol) for name, symbol in symbols.items()},
         "meant": {name: _text(value) for name, value in meant.items()},
-        "labels": labels,
         "steps": [_step(sheet, number) for number in range(1, len(sheet.derivation) + 1)],
         "image": sheet.image,
-        "numbers": {key(s.name): number_of(s, system) for s in system.parameters} if sheet.image else {},
+        "numbers": {key(s.name): number for s, number in numbers_of(system).items()} if len(sheet.image) == 2 else {},
         "conventions": [{"words": words, "changes": each} for words, each in changes],
     }
 

@@ -26,7 +26,7 @@ from percept_obs.labs.shared.printed import FRONT, file_of
 from percept_obs.labs.shared.saved import ended, page_of
 from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Blocks, read_motion
-from percept_obs.labs.shared.view import read_view, view_of
+from percept_obs.labs.shared.view import read_view
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
 from percept_obs.system.surfaces import BehindCamera
 from percept_obs.validation import checked, write_whole
@@ -104,7 +104,7 @@ class Lab(anywidget.AnyWidget):
     title = "A lab"
     blocks: Blocks = MappingProxyType({})
     """Vectors and matrices that may vary over time, by their letters."""
-    looks: Schema = view_of((), ())
+    looks: Schema = Schema()
     """What can be looked at."""
     from_the_page: tuple[str, ...] = ("view", "settings", "summary")
     """Traits that the page may set."""
@@ -128,7 +128,7 @@ class Lab(anywidget.AnyWidget):
         settings = {name: value for name, value in settings.items() if name not in self.looks}
         self._opening = opening
         self._opening = self.check(settings)
-        if view["chosen"] not in ["", *self._opening.get("observers", [])]:
+        if view.get("chosen") not in [None, "", *self._opening.get("observers", [])]:
             raise ValueError(f"chosen is {view['chosen']!r}; choose one of the observers {self._opening['observers']}")
         model |= {"opening": self._opening, "standard": self.check(standard), "schema": self.schema.for_the_page()}
         model |= {"view": {"schema": self.looks.for_the_page(), "standard": self.looks.opening}}

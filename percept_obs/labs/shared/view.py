@@ -27,6 +27,6 @@ def view_of(groups: Sequence[str], charts: Sequence[str]) -> Schema:
 def read_view(looks: Schema, view: Settings) -> Settings:
     """Complete what is looked at, or a ValueError that says what is wrong."""
     whole = looks.read(view, looks.opening)
-    if whole["sight"] and not whole["sight"][0] < whole["sight"][1]:
+    if whole.get("sight") and not whole["sight"][0] < whole["sight"][1]:
         raise ValueError(f"sight is {whole['sight']}; give two times in seconds, the earlier one first")
     return whole

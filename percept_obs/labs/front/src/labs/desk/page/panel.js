@@ -1,58 +1,58 @@
-// What is derived: whose system, which motion and surface, what is measured, which observer.
+// The drawer of the desk: what is derived, and whose system; the way back.
 
+import { button, element, setText } from "../../../draw/dom.js";
 import { same } from "../../../state/settings.js";
-import { field, select } from "../../../ui/controls.js";
-import { element } from "../../../draw/dom.js";
+import { field } from "../../../ui/controls.js";
 import { Fieldsets } from "../../../ui/fieldsets.js";
+import { historyButtons } from "../../../ui/messages.js";
 
-export const WORDS = {
-  surface: { label: "Imaging surface" },
-};
-
-const WITH_OBSERVER = ["observer", "error"];
+export const WORDS = { surface: { label: "Imaging surface" } };
 
 export class Panel extends Fieldsets {
   constructor(lab) {
     super(lab);
     const { model } = lab;
-    const given = Boolean(model.given);
-    const free = (row) => this.onlyIf(({ student }) => !given && !student.trim(), row);
-    const whose = this.add(field(this.bound("student", true)));
+    const free = ({ student }) => !model.given && !student.trim();
+    const offered = model.given?.outputs ?? Object.values(model.surfaces).flat();
+    const choicesOf = (surface) => model.given?.outputs ?? model.surfaces[surface];
+    const canBe = (names, surface) => choicesOf(surface).some((each) => same(each, names));
+    const possible = (surface) => (canBe(lab.settings.outputs, surface) ? {} : { outputs: model.surfaces[surface][0] });
+    this.history = historyButtons(lab);
+    this.more = button("More", () => lab.unfold(), { class: "link", "data-control": "more" });
+    const clear = () => lab.change({ typed: {}, hints: {} }, true);
+    const ways = [
+      ...[this.history.undo, this.history.redo],
+      button("Clear all lines", clear, { "data-control": "clear" }),
+      button("Reset", () => lab.reset(), { "data-control": "reset" }),
+    ];
     this.body = element(
-      "div",
-      { class: "choices-of-desk" },
+      "section",
+      { class: "drawer", "aria-label": "More controls", hidden: true },
+      element("div", { class: "actions" }, ...ways),
       this.choice("part", { choices: model.parts, besides: () => ({ step: 1 }) }),
-      this.onlyIf(() => !given, whose),
-      free(this.choice("motion")),
-      free(this.choice("surface", { besides: (surface) => this.possibleOutputs(surface) })),
-      this.onlyIf(({ student }) => given || !student.trim(), this.outputs()),
-      this.onlyIf(({ part }) => WITH_OBSERVER.includes(part), this.choice("observer", { choices: model.observers })),
+      this.onlyIf(() => !model.given, this.add(field(this.bound("student", true)))),
+      this.onlyIf(free, this.choice("motion")),
+      this.onlyIf(free, this.choice("surface", { besides: possible })),
+      this.onlyIf(
+        ({ student }) => model.given || !student.trim(),
+        this.choice("outputs", {
+          choices: Object.fromEntries(offered.map((names) => [names.join(), names.join(" and ")])),
+          possible: (value) => canBe(value.split(","), lab.settings.surface),
+          get: () => lab.settings.outputs.join(),
+          set: (value) => lab.change({ outputs: value.split(",") }, true),
+        }),
+      ),
+      this.onlyIf(({ part }) => /observer|error/.test(part), this.choice("observer", { choices: model.observers })),
+      this.number("point.2"),
     );
-    this.inverse = this.number("point.2");
   }
 
-  /** Outputs that can be measured on a surface. */
-  choicesOf(surface) {
-    return this.model.given?.outputs ?? this.model.surfaces[surface];
-  }
-
-  possibleOutputs(surface) {
-    const choices = this.choicesOf(surface);
-    return choices.some((names) => same(names, this.lab.settings.outputs)) ? {} : { outputs: choices[0] };
-  }
-
-  outputs() {
-    const { lab, model } = this;
-    const all = model.given ? model.given.outputs : Object.values(model.surfaces).flat();
-    const choices = Object.fromEntries(all.map((names) => [names.join(), names.join(" and ")]));
-    const { label } = this.schema.outputs;
-    return this.add(
-      select({
-        ...{ name: "outputs", label, choices },
-        possible: (value) => this.choicesOf(lab.settings.surface).some((names) => names.join() === value),
-        get: () => lab.settings.outputs.join(),
-        set: (value) => lab.change({ outputs: value.split(",") }, true),
-      }),
-    );
+  /** Open or close the drawer, and bring its buttons to the history. */
+  unfold(state) {
+    const open = Boolean(state.view.more);
+    this.body.hidden = !open;
+    this.more.setAttribute("aria-expanded", String(open));
+    setText(this.more, open ? "Less" : "More");
+    this.history.show(state);
   }
 }

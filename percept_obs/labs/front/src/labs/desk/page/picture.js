@@ -6,107 +6,89 @@ import { View } from "../../../draw/view.js";
 import { Handle } from "../../../draw/handle.js";
 import { arrowMark, foeMark } from "../../../draw/marks.js";
 
-/** Half the side of what is seen, in units of the image; greatest length there of an arrow at the point. */
-const [HALF, LENGTH] = [1.12, 1.1];
-/** Part of the distance between two places that a long arrow of the field takes, and how pale it is. */
-const [FULL, PALE] = [0.9, 0.45];
-/** Part of the true motion below which a difference cannot be seen. */
-const AGREE = 0.02;
+/** Half the side of what is seen and the longest arrow, in units of the image; the least difference that is seen. */
+const [HALF, LENGTH, AGREE] = [1.12, 1.1, 0.02];
+/** Of the field: part of the way to the next place that a long arrow takes, how pale it is, its most pixels. */
+const [FULL, PALE, MOST] = [0.9, 0.45, 60];
 
-/**
- * @typedef {(number | null)[]} Motion
- * @typedef {{names: string[], true: number[], mine: Motion, whole: Motion, field: any, foe: any}} Motions
- */
+/** @typedef {{names: string[], true: number[], mine: any, whole: any, field: any, foe: any}} Motions */
 
 export class MotionPicture extends View {
   constructor(lab) {
     super("motion", "The image and how it moves", "The image");
+    const inside = (value) => Number(within(value, -1, 1).toFixed(3));
     this.handle = new Handle({
       ...{ name: "point", label: "Point of the image: drag it, or use the arrow keys", className: "grip" },
-      onMove: ([y1, y2]) => lab.movePoint([y1, y2].map((value) => Number(within(value, -1, 1).toFixed(3)))),
+      onMove: ([y1, y2]) => lab.change({ point: [inside(y1), inside(y2), lab.settings.point[2]] }),
       onRest: () => lab.rest(),
     });
     this.figure.append(this.handle.node);
   }
 
-  /** Draw motions at a point; `held` lets the handle be ahead of them. Return true while an arrow is on its way. */
-  draw(/** @type {Motions} */ motions, at, point, theme, motion) {
+  /** Draw motions at a point; the handle may be ahead of them.  Return true while an arrow is on its way. */
+  draw(/** @type {Motions} */ motions, { settings: { point: at } }, point, theme, motion) {
     const { true: known, foe } = motions;
     const mine = filled(motions.mine, known);
     const moving = this.glide(mine ?? known, motion);
     this.begin(theme);
     const { width, height } = this;
-    const scale = (Math.min(width, height) / 2) / HALF;
-    const frame = {
-      ...{ scale, box: { left: 0, top: 0, width, height } },
-      x: (y1) => width / 2 + y1 * scale,
-      y: (y2) => Math.min(height, width) / 2 - y2 * scale, // what is left of a high place is below
-    };
+    const scale = Math.min(width, height) / 2 / HALF;
+    const [x, y] = [(y1) => width / 2 + y1 * scale, (y2) => height / 2 - y2 * scale];
     const [blue] = theme.lines;
-    this.axes(frame);
-    this.fieldOf(motions, frame, blue);
-    const from = [frame.x(at[0]), frame.y(at[1])];
+    for (const axis of [[[0, y(0)], [width, y(0)]], [[x(0), 0], [x(0), height]]])
+      this.line(axis, theme.grid, { width: 1 });
+    this.write("y1", width - 8, y(0) - 10, theme.muted, "right");
+    this.write("y2", x(0) + 8, 12, theme.muted, "left");
+    this.fieldOf(motions, { x, y, scale });
+    const from = [x(at[0]), y(at[1])];
     const size = Math.min(...[known, mine, filled(motions.whole, known)].map((way) => roomFor(way ?? known, at)));
     const wayOf = (/** @type {any} */ [d1, d2]) => [scale * size * d1, -scale * size * d2];
-    const [seen, own] = [wayOf(known), mine && wayOf(/** @type {number[]} */ (this.at))];
+    const [seen, own, alike] = [wayOf(known), mine && wayOf(this.at), mine && agrees(motions)];
     const tips = [seen, own ?? seen].map((way) => way.map((value, c) => from[c] + value));
-    if (own && !agrees(motions)) this.line(tips, theme.warning, { width: 1.5, dash: [4, 3] });
+    if (own && !alike) this.line(tips, theme.warning, { width: 1.5, dash: [4, 3] });
     this.arrow(from, seen, theme.ink, 3.5);
-    if (own) this.arrow(from, own, blue, agrees(motions) ? 1.5 : 3.5);
+    if (own) this.arrow(from, own, blue, alike ? 1.5 : 3.5);
     this.dot(from[0], from[1], 6, theme.ink);
-    const far = (way) => ({ gap: 6, towards: way });
-    const alike = own && agrees(motions);
-    const named = { id: "true", text: alike ? "yours and true" : "true", at: tips[0], colour: theme.ink, rank: 0 };
-    this.tag({ ...named, ...far(seen) });
-    if (own && !alike) this.tag({ id: "yours", text: "yours", at: tips[1], colour: blue, rank: 0, ...far(own) });
-    if (foe) this.foe(foe, frame, blue);
-    this.handle.stand(point, frame);
+    const label = (text, at, colour, towards) => this.tag({ id: text, text, at, colour, rank: 0, gap: 6, towards });
+    label(alike ? "yours and true" : "true", tips[0], theme.ink, seen);
+    if (own && !alike) label("yours", tips[1], blue, own);
+    if (foe) this.foe(foe, x, y);
+    this.handle.stand(point, { scale, box: { left: 0, top: 0, width, height }, x, y });
     this.end();
     this.tell(inWords(motions, at));
     this.handle.describe();
     return moving;
   }
 
-  axes({ x, y }) {
-    const { theme, width, height } = this;
-    this.line([[0, y(0)], [width, y(0)]], theme.grid, { width: 1 });
-    this.line([[x(0), 0], [x(0), height]], theme.grid, { width: 1 });
-    this.write("y1", width - 8, y(0) - 10, theme.muted, "right");
-    this.write("y2", x(0) + 8, 12, theme.muted, "left");
-  }
-
   /** A pair of arrows at each place, so long as fits between two of them. */
-  fieldOf({ field, true: known, mine }, { x, y, scale }, blue) {
+  fieldOf({ field, true: known, mine }, { x, y, scale }) {
     const pen = this.context;
-    const sizeAt = (k) => Math.hypot(...field.true.map((row) => row[k])) || 0;
-    const sizes = field.places.map((_, k) => sizeAt(k)).sort((a, b) => a - b);
+    const whole = field.places.map((_, k) => field.true.map((row) => row[k]));
+    const sizes = whole.map((way) => Math.hypot(...way) || 0).sort((a, b) => a - b);
     const apart = Math.abs(field.places[1][0] - field.places[0][0]);
     const size = (scale * FULL * apart) / Math.max(sizes[Math.floor(0.9 * sizes.length)], 1e-9);
-    const typed = filled(mine, known) !== null;
+    const arrow = ([left, top], [d1, d2], colour, width) => {
+      const reach = size * Math.min(1, MOST / (size * Math.hypot(d1, d2) || 1));
+      const to = [left + reach * d1, top - reach * d2];
+      if (Math.hypot(reach * d1, reach * d2) > 3) arrowMark(pen, [left, top], to, { colour, dash: [], width, head: 6 });
+    };
     pen.globalAlpha = PALE;
     field.places.forEach(([y1, y2], k) => {
-      const whole = field.true.map((row) => row[k]);
-      const own = typed ? filled(field.mine.map((row) => row[k]), whole) : null;
-      this.small([x(y1), y(y2)], whole, size, this.theme.ink, 1.5);
-      if (own) this.small([x(y1), y(y2)], own, size, blue, 2);
+      arrow([x(y1), y(y2)], whole[k], this.theme.ink, 1.5);
+      const own = filled(mine, known) && filled(field.mine.map((row) => row[k]), whole[k]);
+      if (own) arrow([x(y1), y(y2)], own, this.theme.lines[0], 2);
     });
     pen.globalAlpha = 1;
   }
 
-  small([x, y], [d1, d2], size, colour, width) {
-    const reach = Math.min(1, 60 / (size * Math.hypot(d1, d2) || 1));
-    const to = [x + size * reach * d1, y - size * reach * d2];
-    if (Math.hypot(to[0] - x, to[1] - y) > 3) arrowMark(this.context, [x, y], to, { colour, dash: [], width, head: 6 });
-  }
-
   /** Where distance drops out of the motion: the true place, and the typed one. */
-  foe({ true: [y1, y2], mine }, { x, y }, blue) {
-    const { theme } = this;
-    foeMark(this.context, within(x(y1), 10, this.width - 10), within(y(y2), 10, this.height - 10), theme);
+  foe({ true: [y1, y2], mine }, x, y) {
+    const { theme, width, height } = this;
+    foeMark(this.context, within(x(y1), 10, width - 10), within(y(y2), 10, height - 10), theme);
     this.tag({ id: "foe", text: "true place", at: [x(y1), y(y2)], colour: theme.warning, rank: 1 });
     if (mine.includes(null)) return;
-    this.ring(x(mine[0]), y(mine[1]), 9, blue);
-    this.tag({ id: "own", text: "yours", at: [x(mine[0]), y(mine[1])], colour: blue, rank: 1 });
+    this.ring(x(mine[0]), y(mine[1]), 9, theme.lines[0]);
+    this.tag({ id: "own", text: "yours", at: [x(mine[0]), y(mine[1])], colour: theme.lines[0], rank: 1 });
   }
 }
 
@@ -128,10 +110,7 @@ export function agrees({ mine, true: known }) {
 }
 
 function inWords({ names, mine, true: known }, [y1, y2, inverse]) {
-  const place = `At y1 = ${readable(y1)}, y2 = ${readable(y2)}, inverse distance ${readable(inverse)}/m: `;
-  const each = names.map((name, k) => {
-    const yours = mine[k] === null ? "" : `yours ${readable(mine[k])}, `;
-    return `${name}: ${yours}true ${readable(known[k])}`;
-  });
-  return `${place}${each.join("; ")}.`;
+  const yours = (k) => (mine[k] === null ? "" : `yours ${readable(mine[k])}, `);
+  const each = names.map((name, k) => `${name}: ${yours(k)}true ${readable(known[k])}`);
+  return `At y1 = ${readable(y1)}, y2 = ${readable(y2)}, inverse distance ${readable(inverse)}/m: ${each.join("; ")}.`;
 }

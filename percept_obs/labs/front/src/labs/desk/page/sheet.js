@@ -2,15 +2,12 @@
 
 import { button, element, formula, listen, setText } from "../../../draw/dom.js";
 
-const MARKS = { right: "✓", begun: "…", wrong: "✗", carried: "↳", unknown: "?" };
-const SAID = {
-  ...{ right: "right", begun: "right so far", wrong: "not right" },
-  ...{ carried: "right from there on", unknown: "cannot be told" },
+/** Signs and words of marks; and marks of lines after which the next one is asked for. */
+const MARKS = {
+  ...{ "": ["", ""], right: ["✓", "right"], begun: ["…", "right so far"], wrong: ["✗", "not right"] },
+  ...{ carried: ["↳", "right from there on"], unknown: ["?", "cannot be told"] },
 };
-/** Marks of lines after which the next one is asked for. */
 const PASSED = ["right", "carried", "unknown"];
-const INVITED = "Type here";
-const UNFINISHED = "not complete yet";
 
 let count = 0;
 
@@ -20,16 +17,14 @@ export class Sheet {
     /** @type {Line[]} */
     this.lines = [];
     this.key = "";
-    this.list = element("div", { class: "sheet-lines" });
-    this.words = element("p", { class: "sheet-words" });
+    this.list = element("div", {});
     const open = () => lab.openHint(Number(this.hint.dataset.number));
     this.hint = button("", open, { "data-control": "hint", hidden: true });
-    this.work = element("p", { class: "thinking", role: "status", hidden: true }, "Python is looking …");
-    const found = element("div", { class: "found" }, this.words, this.hint, this.work);
-    this.body = element("div", { class: "sheet" }, this.list, found);
+    const work = element("p", { class: "looking", role: "status" }, "Python is looking …");
+    this.body = element("div", {}, this.list, element("div", { class: "found" }, this.hint, work));
   }
 
-  /** Show what Python has found; of a line whose text is newer only that it is being looked at. */
+  /** Show what is found of all lines that are asked for by now. */
   show(answer, current) {
     const key = JSON.stringify(answer.lines.map((line) => line.key));
     if (key !== this.key) {
@@ -37,33 +32,26 @@ export class Sheet {
       this.lines = answer.lines.map((line) => new Line(this.lab, line));
       this.list.replaceChildren(...this.lines.map(({ row }) => row));
     }
-    const { calm } = this.lab;
-    const open = this.lab.face === "workbench" ? this.lines.length : openOf(answer.lines);
+    const { calm, settings } = this.lab;
+    const next = answer.lines.findIndex(({ mark }) => !PASSED.includes(mark));
+    const typed = answer.lines.findLastIndex(({ key: name }) => settings.typed[name]);
+    const open = Math.max(next < 0 ? this.lines.length : next + 1, typed + 1);
     this.lines.forEach((line, k) => {
       line.row.hidden = k >= open;
       line.show(answer.lines[k], calm);
     });
-    const said = current && (calm || answer.right);
-    setText(this.words, said ? answer.words : "");
-    this.words.className = `sheet-words ${said && answer.right ? "right" : ""}`;
-    this.body.classList.toggle("waiting", !current);
     // It stays where it is while somebody types, or the focus and the lines below would jump.
     if (!calm || !current) return;
     const focused = this.hint === document.activeElement;
     this.hint.hidden = !answer.hint;
     this.hint.dataset.number = answer.hint;
-    setText(this.hint, `Hint: ${answer.says}`);
-    if (focused && !answer.hint) this.lines.at(-1)?.field.focus({ preventScroll: true });
-  }
-
-  thinking(on) {
-    this.work.hidden = !on;
+    setText(this.hint, answer.says ?? "");
+    if (focused && !answer.hint) this.lines[open - 1].field.focus({ preventScroll: true });
   }
 
   /** The findings in words, for a screen reader. */
   told(answer) {
-    const lines = this.lines.map((line, k) => line.told(answer.lines[k])).filter(Boolean);
-    return [answer.words, ...lines].filter(Boolean).join(" ");
+    return [answer.words, ...this.lines.map((line, k) => line.told(answer.lines[k]))].filter(Boolean).join(" ");
   }
 }
 
@@ -75,146 +63,73 @@ class Line {
     const id = `percept-line-${++count}`;
     this.field = element("textarea", {
       ...{ id, rows: 1, maxlength: lab.schema.typed.of.most, "data-control": `line ${key}`, placeholder: "Type here" },
-      ...{ spellcheck: "false", autocapitalize: "off", autocomplete: "off", autocorrect: "off" },
-      "aria-describedby": `${id}-found`,
+      ...{ spellcheck: "false", autocapitalize: "off", autocomplete: "off", "aria-describedby": `${id}-found` },
     });
+    const enter = (event) => {
+      event.preventDefault();
+      lab.rest();
+    };
     listen(this.field, {
       input: () => lab.type(key, this.field.value.replace(/\s*\n\s*/g, " ")),
       focus: () => lab.choose(key),
       blur: () => lab.rest(),
-      keydown: (event) => {
-        if (event.key !== "Enter") return;
-        event.preventDefault();
-        lab.rest();
-      },
+      keydown: (event) => event.key === "Enter" && enter(event),
     });
-    const words = label
-      ? [formula("span", label, { "aria-hidden": "true" }), element("span", { class: "unseen" }, name)]
-      : [name];
-    this.mark = element("span", { class: "mark", role: "img" });
+    const spoken = element("span", { class: "unseen" }, name);
+    const words = label ? [formula("span", label, { "aria-hidden": "true" }), spoken] : [name];
+    this.mark = element("span", { role: "img" });
     this.formula = element("div", { class: "as-typed", role: "group", "aria-label": `${name} as mathematics` });
     this.state = element("p", { class: "state", id: `${id}-found` });
     this.hints = element("ul", { class: "told" });
-    this.row = element(
-      "div",
-      { class: label ? "typed" : "typed wordy" },
-      element("label", { for: id }, ...words),
-      element("div", { class: "entry" }, this.field, this.mark),
-      element("div", { class: "beneath" }, this.formula, this.state, this.hints),
-    );
-    this.markup = this.hinted = this.measured = this.grown = "";
+    const entry = element("div", { class: "entry" }, this.field, this.mark);
+    const beneath = element("div", { class: "beneath" }, this.formula, this.state, this.hints);
+    const asked = element("label", { for: id }, ...words);
+    this.row = element("div", { class: label ? "typed" : "typed wordy" }, asked, entry, beneath);
+    /** @type {Record<string, string>} */
+    this.drawn = {};
   }
 
+  /** True if something is not yet drawn as it is now. */
+  isNew(name, ...parts) {
+    const { [name]: before } = this.drawn;
+    this.drawn[name] = JSON.stringify(parts);
+    return this.drawn[name] !== before;
+  }
+
+  /** Show a line, or as much of it as is played. */
   show(found, calm) {
     const { at, part, line: { key } } = this.lab.replay;
     const played = at !== null && key === this.key;
-    const whole = this.lab.settings.typed[this.key] ?? "";
-    const text = played ? whole.slice(0, at) : whole;
+    const text = (this.lab.settings.typed[this.key] ?? "").slice(0, played ? at : undefined);
     if (this.field.value !== text) this.field.value = text;
-    const mine = this.lab.isOf(this.key);
-    this.row.classList.toggle("late", !mine);
-    const markup = played ? (part?.markup ?? "") : found.markup;
-    if (mine && this.markup !== markup) {
-      this.markup = markup;
-      this.formula.replaceChildren(...inPieces(markup));
+    this.write(played ? (part?.pieces ?? []) : found.pieces, text);
+    const mark = !played && (calm || found.mark === PASSED[0]) ? found.mark : "";
+    setText(this.mark, MARKS[mark][0]);
+    Object.assign(this.mark, { className: `mark ${mark}`, hidden: !mark, ariaLabel: MARKS[mark][1] });
+    const refusal = (!played && found.refusal) || "";
+    this.field.ariaInvalid = String(Boolean(calm && refusal));
+    const told = played ? [] : found.told;
+    if (!this.isNew("state", refusal, calm, text, told)) return;
+    const place = element("mark", {}, text.slice(found.position, found.position + 1) || " ");
+    const quoted = element("code", {}, text.slice(Math.max(0, found.position - 30), found.position), place);
+    this.state.replaceChildren(...(!refusal ? [] : calm ? [quoted, refusal] : ["not complete yet"]));
+    const piece = ({ text: words, math }) => (math === undefined ? words : formula("span", math));
+    this.hints.replaceChildren(...told.map((pieces) => element("li", {}, ...pieces.map(piece))));
+  }
+
+  /** Write the mathematics, let the field be as high as its text, and a keyboard reach what is too wide. */
+  write(pieces, text) {
+    if (this.isNew("formula", this.lab.width, pieces)) {
+      this.formula.replaceChildren(...pieces.map((piece) => formula("span", piece, {}, true)));
+      this.formula.tabIndex = this.formula.scrollWidth > this.formula.clientWidth ? 0 : -1;
     }
-    this.fit(text, markup);
-    if (played) {
-      this.mark.hidden = true;
-      setText(this.state, "");
-      this.state.classList.remove("pill");
-      this.tell([]);
-      return;
-    }
-    const mark = mine && (calm || PASSED[0] === found.mark) ? found.mark : "";
-    setText(this.mark, MARKS[mark] ?? "");
-    this.mark.className = `mark ${mark}`;
-    if (mark) this.mark.setAttribute("aria-label", SAID[mark]);
-    else this.mark.removeAttribute("aria-label");
-    this.mark.hidden = !mark;
-    const refused = Boolean(mine && found.refusal);
-    this.field.setAttribute("aria-invalid", String(calm && refused));
-    const invited = calm && found.mark !== "right" && text && !this.lab.byHand && this.lab.answer.hint === 2;
-    this.state.classList.toggle("pill", invited);
-    if (calm && refused) this.refuse(found, text);
-    else setText(this.state, refused ? UNFINISHED : invited ? INVITED : "");
-    this.tell(mine ? found.told : []);
+    if (!this.isNew("field", this.lab.width, this.row.hidden, text)) return;
+    this.field.style.height = "auto";
+    this.field.style.height = `${this.field.scrollHeight + 2}px`;
   }
 
-  /** Let the field be as high as its text, and a keyboard reach a formula that is wider than its place. */
-  fit(text, markup) {
-    const { width, face } = this.lab;
-    const seen = [width, face, this.row.hidden, text].join(" ");
-    if (seen !== this.grown) {
-      this.grown = seen;
-      this.field.style.height = "auto";
-      this.field.style.height = `${this.field.scrollHeight + 2}px`;
-    }
-    const shown = `${width} ${markup}`;
-    if (shown === this.measured) return;
-    this.measured = shown;
-    const { scrollWidth, clientWidth } = this.formula;
-    if (scrollWidth > clientWidth) this.formula.setAttribute("tabindex", "0");
-    else this.formula.removeAttribute("tabindex");
+  told({ refusal, mark }) {
+    const hints = [...this.hints.children].map((item) => ` ${item.textContent}.`).join("");
+    return refusal || mark ? `${this.name}: ${refusal ?? MARKS[mark][1]}.${hints}` : "";
   }
-
-  /** Say why a text cannot be read, with the place in it. */
-  refuse({ refusal, position }, text) {
-    const at = Math.min(position, text.length);
-    const place = element("mark", {}, text.slice(at, at + 1) || " ");
-    const quoted = element("code", {}, text.slice(Math.max(0, at - 30), at), place, text.slice(at + 1, at + 20));
-    const said = `${quoted.textContent} ${refusal}`;
-    if (this.state.textContent !== said) this.state.replaceChildren(quoted, ` ${refusal}`);
-  }
-
-  /** Hints, in words and mathematics. */
-  tell(sentences) {
-    const key = JSON.stringify(sentences);
-    if (key === this.hinted) return;
-    this.hinted = key;
-    this.hints.replaceChildren(...sentences.map((pieces) => element("li", {}, ...pieces.map(pieceOf))));
-  }
-
-  told(found) {
-    if (found.refusal) return `${this.name}: ${found.refusal}.`;
-    if (!found.mark) return "";
-    const hints = [...this.hints.children].map((item) => ` ${item.textContent}.`);
-    return `${this.name}: ${SAID[found.mark]}.${hints.join("")}`;
-  }
-}
-
-/** How many lines the first screen shows: up to the first that is not passed, and all that are typed. */
-function openOf(lines) {
-  const next = lines.findIndex(({ mark }) => !PASSED.includes(mark));
-  const typed = lines.findLastIndex(({ markup, refusal }) => markup || refusal);
-  return Math.max(next < 0 ? lines.length : next + 1, typed + 1);
-}
-
-function pieceOf({ text, math }) {
-  return math === undefined ? text : formula("span", math);
-}
-
-/** A sum in pieces, a formula for each term, so that it goes on in the next line where its place is narrow. */
-function inPieces(markup) {
-  if (!markup) return [];
-  const whole = formula("div", markup);
-  /** @type {Element[][]} */
-  const pieces = [[]];
-  for (const node of [...whole.querySelectorAll("math > mrow > *")]) {
-    const before = pieces.at(-1) ?? [];
-    if (isSign(node) && before.length && !isSign(before[before.length - 1])) {
-      node.setAttribute("form", "infix");
-      pieces.push([]);
-    }
-    pieces.at(-1)?.push(node);
-  }
-  return pieces.map((nodes) => {
-    const piece = formula("span", "", {}, true);
-    piece.firstElementChild?.append(...nodes);
-    return piece;
-  });
-}
-
-function isSign(node) {
-  return node.localName === "mo" && "+−=".includes(node.textContent);
 }
