@@ -128,8 +128,9 @@ class Lab(anywidget.AnyWidget):
         settings = {name: value for name, value in settings.items() if name not in self.looks}
         self._opening = opening
         self._opening = self.check(settings)
-        if view.get("chosen") not in [None, "", *self._opening.get("observers", [])]:
-            raise ValueError(f"chosen is {view['chosen']!r}; choose one of the observers {self._opening['observers']}")
+        running = self._opening.get("observers", [])
+        if view.get("chosen") and view["chosen"] not in running:
+            raise ValueError(f"chosen is {view['chosen']!r}; choose one of the observers that run: {running}")
         model |= {"opening": self._opening, "standard": self.check(standard), "schema": self.schema.for_the_page()}
         model |= {"view": {"schema": self.looks.for_the_page(), "standard": self.looks.opening}}
         super().__init__(
