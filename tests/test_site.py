@@ -274,11 +274,10 @@ def test_a_printed_page_is_cut_nowhere_and_shows_no_menu(pages, browser):
 
 @pytest.fixture(scope="module")
 def shown(pages, browser):
-    """Two labs in a page of the site, on their workbenches, without a network."""
+    """Two labs in a page of the site, without a network."""
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
     page.goto((pages / "notebooks" / NOTEBOOK).with_suffix(".html").as_uri())
     page.wait_for_function(SETTLED, arg=2)
-    page.evaluate("() => [...window.perceptObsLabs].forEach((lab) => lab.turn('workbench'))")
     yield Shown(page, 2)
     page.close()
 

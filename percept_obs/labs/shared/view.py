@@ -16,7 +16,9 @@ def view_of(groups: Sequence[str], charts: Sequence[str]) -> Schema:
     """Return what can be looked at in a lab whose drawer has groups of its own, and which has these charts."""
     open_one = (*groups, *EVERY_LAB_HAS, ALL_FOLDED)
     return Schema(
-        more=Choice("", ("", *open_one), about=f"the open group of the drawer, of {', '.join(open_one)}; or closed, ''"),
+        more=Choice(
+            "", ("", *open_one), about=f"the open group of the drawer, of {', '.join(open_one)}; or closed, ''"
+        ),
         charts=Names([], tuple(charts), 0, about=f"charts below the first one, of {', '.join(charts)}"),
         chosen=Text("", 100, about="the observer that arrows and sentence are about; empty for the first one"),
         side=Flag(about="whether the map is turned to the side"),

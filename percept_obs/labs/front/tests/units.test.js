@@ -184,7 +184,7 @@ test("a schema takes ranges from Python and words from the page", () => {
   assert.deepEqual(schema.hold.choices, { zero: "held", first: "a line" });
   assert.equal(schema.hold.label, "Hold");
   const entry = schemaAt(schema, "b.0");
-  assert.deepEqual([entry.name, entry.label, entry.nonzero, entry.log, entry.low], ["true b1", "b1", true, true, -5]);
+  assert.deepEqual([entry.name, entry.label, entry.nonzero, entry.log, entry.low], ["true b1", "b1", true, false, -5]);
   assert.equal(schemaAt(schema, "start.mode").name, "start");
 });
 
