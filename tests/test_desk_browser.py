@@ -133,7 +133,7 @@ def test_without_python_lines_are_judged_and_what_only_python_reads_is_said(brow
     assert page.locator(LINE.replace("y1", "y2")).is_visible()  # the next line is asked for
     page.fill(LINE, "a11 y1 + a13 y2 - a22 y1 - a23 y1 y2 + b1 y3 + b2 y1 y3")
     page.locator(".mark.wrong").wait_for()
-    assert (text_of(page, ".slip"), text_of(page, ".told")) == ("+b2 y1 y3", "the sign of b2 y1 y3 is turned")
+    assert (text_of(page, ".slip"), text_of(page, ".told")) == ("+b2 y1 y3", "b2 y1 y3 has the wrong sign")
     page.fill(LINE, "\\frac{y1}{2}")
     page.locator(f"{LINE}[aria-invalid=true]").wait_for()
     assert SAID["python"] in text_of(page, ".state")

@@ -88,7 +88,7 @@ def test_hostile_texts_are_answered_and_stop_early(node):
 
 
 SLIPS = {
-    "sign": (TYPED, "+b3 y1", "the sign of b3 y1 is turned"),
+    "sign": (TYPED, "+b3 y1", "b3 y1 has the wrong sign"),
     "letter": (RIGHT.replace("a12", "a21"), "+a21 y2", "a21 y2 does not belong here"),
     "factor": (RIGHT.replace("a13", "2 a13"), "+2 a13", "2 a13 is 2 times what it should be"),
     "in front of a bracket": (RIGHT.replace("y1 (", "y2 ("), "−y2 (a31 y1+a32 y2+a33+b3 y3)", "does not belong here"),

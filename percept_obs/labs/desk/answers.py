@@ -49,7 +49,7 @@ SAID: dict[str, Any] = {
     "python": "Python reads this: open the desk in a notebook",
     "unfinished": "something is missing at the end",
     "slips": {
-        "sign": "the sign of {term} is turned",
+        "sign": "{term} has the wrong sign",
         "factor": "{term} is {times} times what it should be",
         "other": "{term} does not belong here: look at its letters, and at their powers",
     },

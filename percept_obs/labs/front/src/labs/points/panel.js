@@ -56,7 +56,7 @@ export class Panel extends Fieldsets {
     super(lab);
     this.groups = [
       { name: "points", title: "Points", inside: this.points() },
-      { name: "weight", title: "The observer's P", inside: this.weight() },
+      { name: "weight", title: "Observer: its gain P", inside: this.weight() },
       { name: "motion", title: "Motion, A(t) and v(t)", inside: this.motion() },
       {
         ...{ name: "start", title: "Start of the estimate" },

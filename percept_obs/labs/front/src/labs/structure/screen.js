@@ -241,7 +241,7 @@ export class StructureScreen extends Screen {
     return {
       ...{ unit: "", mark: (value) => (value ? `×${value}` : "0"), spans: this.spansOf(scene) },
       scale: { low: 0, high: Math.max(2.4, free ? 1.15 * Math.max(...sizes) : 0) },
-      title: free ? "" : `${quantity} ÷ true`,
+      title: `${free ? (this.stories ? "speed" : "size") : quantity} ÷ true`,
       lines: [
         ...(ghost ? [this.keptLine(scene)] : []),
         ...(free ? sizes.map((value, k) => level(`other ${k}`, value, theme.muted, { width: 2.5, secret })) : []),

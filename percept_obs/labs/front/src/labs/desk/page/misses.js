@@ -3,7 +3,9 @@
 import { View } from "../../../draw/view.js";
 import { scrubbed } from "../../../ui/scrub.js";
 
-const PAD = { left: 50, right: 16, top: 26, bottom: 24 };
+const PAD = { left: 50, right: 48, top: 26, bottom: 24 };
+/** Room after the last term, where its step goes on. */
+const TREAD = 32;
 /** Height from which terms are named in rows, how many these are, and how high. */
 const [TALL, ROWS, ROW] = [180, 3, 15];
 
@@ -33,16 +35,20 @@ export class Misses extends View {
     const x = (k) => PAD.left + (k / this.count) * (right - PAD.left);
     const y = (miss) => bottom - (Math.min(miss, most) / most) * (bottom - top);
     for (const level of [0, 0.5, 1]) {
-      this.line([[PAD.left, y(level)], [right, y(level)]], grid, { width: 1 });
+      this.line([[PAD.left, y(level)], [right + TREAD, y(level)]], grid, { width: 1 });
       this.write(`${100 * level} %`, PAD.left - 6, y(level), muted, "right");
     }
     this.write("how far the line misses", PAD.left, top - 14, muted, "left");
     this.line(stairs(known, x, y, this.count), blue, { width: 2, alpha: at < this.count ? 0 : 0.3 });
     this.line(stairs(shown, x, y, at), blue, { width: 3 });
+    if (at >= this.count) {
+      const height = y(shown.at(-1)?.miss ?? 1);
+      this.line([[right, height], [right + TREAD, height]], blue, { width: 3 });
+    }
     // The last term first: it is named also where there is no room for all.
     const ends = [0, ...parts.map(({ end }) => end).filter((end) => end <= at)];
     for (let k = ends.length - 1; k > 0; k--) {
-      const row = (ends.length - 1 - k) % rows;
+      const row = k % rows;
       this.write(text.slice(ends[k - 1], ends[k]).trim(), x(ends[k]), bottom + 12 + row * ROW, muted, "right");
     }
     const { miss = 1, end = 0 } = shown.at(-1) ?? {};

@@ -23,7 +23,7 @@ export class Panel extends Fieldsets {
     const ways = [
       ...[this.history.undo, this.history.redo],
       button("Clear all lines", clear, { "data-control": "clear" }),
-      button("Reset", () => lab.reset(), { "data-control": "reset" }),
+      button("Start again", () => lab.reset(), { "data-control": "reset" }),
     ];
     this.body = element(
       "section",
