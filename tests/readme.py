@@ -97,7 +97,7 @@ LABS = {
 PLAYS = f"{LABS['observer_lab'][1]} The picture plays these 4 s once."
 
 SHOW = """(share) => {
-    const [{ first: { clock } }] = window.perceptObsLabs;
+    const [{ screen: { clock } }] = window.perceptObsLabs;
     clock.begun = true;
     if (share < 1) clock.put(clock.start + share * (clock.end - clock.start));
     else clock.finish();

@@ -1,11 +1,8 @@
 """A map of the image is the bound at each place, quickly, with the focus of expansion where the motion has it."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from examples import AFFINE
-from javascript import run_script
 from refusals import refuses
 from sample_sizes import sampled
 
@@ -25,7 +22,7 @@ from percept_obs import (
     scenarios,
     sphere,
 )
-from percept_obs.observability.maps import HIDDEN_VARIANCE, NOISE_VARIANCE, displacements, map_kernel
+from percept_obs.observability.maps import displacements
 
 EQ35 = scenarios.ma2005_eq35().motion
 SYSTEM = PerspectiveSystem(EQ35, pinhole())
@@ -117,25 +114,3 @@ test_the_figure_refuses_what_is_no_map_or_no_threshold = refuses(
     (1, "expected a BoundMap"),
     (None, "must be positive"),
 )
-
-
-@pytest.mark.slow
-@pytest.mark.node
-@pytest.mark.parametrize(
-    ("surface", "measured"), [(pinhole(), ("y1", "y2")), (sphere(), ("y1",)), (plane((0.1, -0.2, 0.9)), ("y1", "y2"))]
-)
-def test_the_page_computes_the_same(node, surface, measured):
-    """48 x 48 places; the printed functions and the page's loop over them, against numpy."""
-    found = bound_map(PerspectiveSystem(EQ35, surface), 1.0, 4.0, measured, (-0.5, 2.5), (-0.7, 2.3), 48)
-    Phi, moved = displacements(EQ35, 0.05 * np.arange(21.0))
-    grid = np.stack([each.ravel() for each in np.meshgrid(found.y1, found.y2)], axis=-1)
-    points = surface.locate(np.hstack([grid, np.full((len(grid), 1), 1 / 4)]))
-    kernel = map_kernel(surface, measured)
-    given = {"points": points, "Phi": Phi, "moved": moved, "shape": np.array([surface.values[s] for s in kernel.shape])}
-    given = {name: values.ravel().tolist() for name, values in given.items()}
-    given |= {"noiseVariance": NOISE_VARIANCE, "hiddenVariance": HIDDEN_VARIANCE}
-    task = {"sources": kernel.sources(), "given": given}
-    answer = run_script(node, Path(__file__).with_name("run_map.mjs"), task)
-    there = np.array([np.nan if value is None else value for value in answer["found"]])
-    np.testing.assert_allclose(there, found.relative.ravel(), rtol=1e-9)
-    assert answer["seconds"] < 1

@@ -235,9 +235,9 @@ def test_a_lab_on_a_slide_is_alive_and_its_keys_turn_no_slide(pages, browser):
     for _ in range(2):  # the title, the goals, the lab
         page.keyboard.press("Space")
     lab = page.locator("section.present .percept-lab").first
-    lab.locator(".first-screen .views canvas").first.wait_for()
-    assert lab.locator(".first-screen .views canvas").first.bounding_box()["height"] > 200
-    gain = lab.locator(".first-screen input[type=range]").first
+    lab.locator(".screen .views canvas").first.wait_for()
+    assert lab.locator(".screen .views canvas").first.bounding_box()["height"] > 200
+    gain = lab.locator(".screen input[type=range]").first
     before = gain.input_value()
     gain.press("ArrowRight")
     assert gain.input_value() != before

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 import sympy as sp
 
-from percept_obs.compile import Array, Printed, function_source, vectorised
+from percept_obs.compile import Array, vectorised
 from percept_obs.compile.integrator import LONGEST_STEP, step_along, step_grid
 from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observability.measures import NOISE_VARIANCE
@@ -31,7 +31,7 @@ PLACE = (*PHI, *MOVED, *START)
 
 @dataclass(frozen=True)
 class MapKernel:
-    """Formulas of a map at one place of the image, as expressions that print in every language.
+    """Formulas of a map at one place of the image, as expressions.
 
     For a point that begins at X0, with P0 the variance of hidden coordinates and R that of the noise::
 
@@ -43,16 +43,6 @@ class MapKernel:
     begin: Expressions  # of X0: the prior's share of the six entries of J, on and above its diagonal, row by row
     gather: Expressions  # of `PLACE`: a sample's share of the six entries, and the distance
     finish: sp.Expr  # of J's entries and `PLACE`: the relative standard deviation of the distance
-    shape: tuple[sp.Symbol, ...] = ()  # of the surface, such as a plane's normal
-
-    def sources(self, language: Printed = "javascript") -> dict[str, str]:
-        """Functions ``evaluate(x, out)`` for "begin", "gather" and "finish"; their arguments end with `shape`."""
-        place = (*PLACE, *self.shape)
-        return {
-            "begin": function_source((*START, *self.shape), self.begin, language),
-            "gather": function_source(place, self.gather, language),
-            "finish": function_source((*INFORMATION, *place), (self.finish,), language),
-        }
 
 
 @lru_cache(maxsize=64)
@@ -82,7 +72,7 @@ def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
     z1, z2, z3 = slope[0], slope[1] - along * slope[0], slope[2] - below * slope[0]
     variance = z1**2 / a + z2**2 / second + (z3 - across * z2) ** 2 / third
     distance = surface.distance.xreplace(at_point)
-    return MapKernel(upper(prior), (*upper(rows), distance), sp.sqrt(variance) / distance, surface.parameters)
+    return MapKernel(upper(prior), (*upper(rows), distance), sp.sqrt(variance) / distance)
 
 
 @checked
