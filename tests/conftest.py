@@ -8,11 +8,11 @@ import gc
 import math
 import shutil
 from collections import Counter
-from pathlib import Path
 
 import hypothesis
 import platformdirs
 import pytest
+from needs import found_chromium, missing
 from sample_sizes import sampled
 
 gc.set_threshold(20_000)  # else what the tests' modules make is looked through again and again, a fifth of loading them
@@ -24,16 +24,6 @@ EXAMPLES = sampled(25, 100)
 hypothesis.settings.register_profile("here", deadline=None, max_examples=EXAMPLES)
 hypothesis.settings.register_profile("ci", deadline=None, max_examples=EXAMPLES, derandomize=True, database=None)
 hypothesis.settings.load_profile("ci" if os.environ.get("CI") == "true" else "here")
-
-BROWSERS = (
-    "chromium-headless-shell",  # the same engine without windows: two thirds of the time
-    "chromium",
-    "chromium-browser",
-    "google-chrome",
-    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
-    "/Applications/Chromium.app/Contents/MacOS/Chromium",
-    r"C:\Program Files\Google\Chrome\Application\chrome.exe",
-)
 
 
 def pytest_itemcollected(item):
@@ -140,26 +130,3 @@ def fresh(lab):
     rested(lab)
     lab.locator(".views").scroll_into_view_if_needed()
     return lab
-
-
-def found_chromium():
-    """The path of Chromium or Chrome, if there is one."""
-    return next(filter(None, map(shutil.which, BROWSERS)), None) or playwright_chromium()
-
-
-def playwright_chromium():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        path = playwright.chromium.executable_path
-    return path if Path(path).exists() else None
-
-
-def missing(need, advice):
-    """Skip a test that needs something which is not here, or fail it where PERCEPT_OBS_MUST_RUN names the need.
-
-    The variable holds words separated by spaces: utias, node, chromium, firefox, lighthouse, or a front end's module.
-    """
-    if need in os.environ.get("PERCEPT_OBS_MUST_RUN", "").split():
-        pytest.fail(advice)
-    pytest.skip(advice)

@@ -1,4 +1,6 @@
-"""From a key at the desk to its feedback in JupyterLab, kernel idle: python tests/benchmarks/bench_desk.py.
+"""From a key at the desk to its feedback in JupyterLab, kernel idle.
+
+    PYTHONPATH=tests/support python tests/benchmarks/bench_desk.py
 
 A line is typed letter by letter.  The time runs from the key's event to the moment at which the frame has been handed
 to the screen that shows, of the text with this letter, the formula as mathematics and what Python found of it.  What is

@@ -1,6 +1,6 @@
 """Speed of labs that draw while the hand drags, and that open, in JupyterLab.
 
-    python tests/benchmarks/bench_lab.py [--alone | --opening] [part of a name]
+    PYTHONPATH=tests/support python tests/benchmarks/bench_lab.py [--alone | --opening] [part of a name]
 
 With the part of a name only the configurations that hold it are measured, with ``--alone`` in a page without
 JupyterLab, and with ``--opening`` only how long a lab takes to open: from the key that runs a cell to the first
@@ -26,12 +26,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-
 import lab_alone
-from conftest import found_chromium
 from jupyter_harness import CHROMIUM_OPTIONS, IDLE, jupyterlab, lab_page, open_notebook
 from lab_browser import OPEN, rested, write_notebook
+from needs import found_chromium
 
 from percept_obs import labs
 from percept_obs.labs.observer.texts import BY_NAME

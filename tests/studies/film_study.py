@@ -1,0 +1,81 @@
+"""Films of quick hands, 10 to 20 s, rendered and read: errors of poses and distances, and faults by name.
+
+`PYTHONPATH=tests/support python tests/studies/film_study.py [SEEDS [FAULT...]]` prints a line a film, and a
+table at the end.
+The faults are the keys of FAULTS.
+"""
+
+import sys
+import tempfile
+from time import process_time
+
+import numpy as np
+import pandas as pd
+from film_renderer import standard_film
+
+from percept_obs.film import read_film
+
+FAULTS = {
+    "clean": {},
+    "shutter": {"readout": 0.02},
+    "blur": {"exposure": 0.02},
+    "soft": {"blur": 1.3},
+    "focus": {"focus": 0.03},
+    "step": {"focus_step": 0.03},
+    "stabilised": {"stabilised": 15.0},
+}
+"""Faults of a telephone, as the renderer takes them."""
+
+AFTER = 3.0
+"""Seconds after which errors are looked at."""
+
+
+def error(run, truth, film, late):
+    """Relative error of a distance at a sample, by the renderer's truth."""
+    pixel = film.camera.pixels(run.recording.last_outputs[late])
+    frame = truth.frame(run.time[late])
+    return abs(run.distance[late] / truth.distance_at(truth.row_time(frame, pixel[None]), pixel)[0] - 1)
+
+
+def judged(film, truth):
+    """Figures of a film."""
+    poses = film.seen.poses
+    off = np.linalg.norm(film.path.at(poses.time).position - truth.poses.position[truth.frame(poses.time)], axis=1)
+    found = {"pose": 1e3 * np.median(off), "focal": film.camera.focal[0] / truth.camera.focal[0] - 1}
+    errors, wrong, count = {True: [], False: []}, 0, 0
+    for run in film.runs:
+        late = int(np.searchsorted(run.elapsed, AFTER))
+        if late < len(run.time):
+            errors[run.recording.truth is not None].append(error(run, truth, film, late))
+        trusted = run.trust().trusted
+        count += trusted
+        wrong += trusted and error(run, truth, film, -1) > 0.1
+    for name, board in (("corners", True), ("others", False)):
+        found |= {name: np.nanmedian(errors[board]), f"{name} 90 %": np.nanquantile(errors[board], 0.9)}
+    return found | {
+        "tracks": len(film),
+        "trusted": count,
+        "trusted and wrong": wrong,
+        "findings": ", ".join(each.key for each in film.findings),
+    }
+
+
+def study(seeds, faults):
+    """Yield figures of films of every seed with every fault."""
+    for fault in faults:
+        for seed in range(seeds):
+            with tempfile.TemporaryDirectory() as folder:
+                path, truth = standard_film(seed, folder, **FAULTS[fault])
+                begin = process_time()
+                film = read_film(path)
+                yield {"fault": fault, "seed": seed, "cpu": process_time() - begin, **judged(film, truth)}
+
+
+if __name__ == "__main__":
+    rows = []
+    for row in study(int((sys.argv[1:] or [3])[0]), sys.argv[2:] or FAULTS):
+        rows.append(row)
+        print(
+            *(f"{name} {value:.3g}" if isinstance(value, float) else f"{name} {value}" for name, value in row.items())
+        )
+    print(pd.DataFrame(rows).groupby("fault").median(numeric_only=True).to_string())
