@@ -78,7 +78,8 @@ def equivariant_filter(form: CanonicalForm) -> Derived:
     P. van Goor, T. Hamel, R. Mahony, Equivariant filter (EqF), 2020 (arXiv:2006.08276); its gains and its linearised
     output are those of a continuous measurement, here they are taken at samples.  Range zero and infinity cannot be
     left, so a start beyond 1 / `least_inverse` begins there.  On Ma's example (35) its basin is not wider than that of
-    the extended Kalman filter, and after a start ten times too near it claims too much (`tests/studies/basin_study.py`).
+    the extended Kalman filter, and after a start ten times too near it claims too much
+    (`tests/studies/basin_study.py`).
 
     Examples
     --------
