@@ -222,8 +222,8 @@ class Lab(anywidget.AnyWidget):
         >>> from percept_obs.labs import observer_lab
         >>> page = Path(tempfile.mkdtemp()) / "lab.html"
         >>> observer_lab(outputs=["y1"]).save(page)
-        >>> page.stat().st_size < 430_000
-        True
+        >>> page.read_text("utf-8")[:15]
+        '<!doctype html>'
         """
         target = Path(file)
         if target.is_dir() or not target.absolute().parent.is_dir():
