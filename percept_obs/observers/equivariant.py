@@ -68,6 +68,7 @@ def equivariant_filter(form: CanonicalForm) -> Derived:
         k = S h^T / (h S h^T + R),  c = k (y_j - yhat_j),  G <- G (I + c^/2)^2,  S <- S - k h S
 
     (I + c^/2)^2 is the exponential of c^ to the second order, and scales by a square, so that a range stays positive.
+    With the mean of both gradients h d misses a direction that is turned by s by s^3/12, with either one by s^2.
 
     See Also
     --------
@@ -78,7 +79,8 @@ def equivariant_filter(form: CanonicalForm) -> Derived:
     P. van Goor, T. Hamel, R. Mahony, Equivariant filter (EqF), 2020 (arXiv:2006.08276); its gains and its linearised
     output are those of a continuous measurement, here they are taken at samples.  Range zero and infinity cannot be
     left, so a start beyond 1 / `least_inverse` begins there.  On Ma's example (35) its basin is not wider than that of
-    the extended Kalman filter, and after a start ten times too near it claims too much (`tests/studies/basin_study.py`).
+    the extended Kalman filter, and after a start ten times too near it claims too much
+    (`tests/studies/basin_study.py`).
 
     Examples
     --------

@@ -15,6 +15,7 @@ from percept_obs import (
     ImagingSurface,
     NotAffine,
     PerspectiveSystem,
+    Scenario,
     affine,
     ekf,
     ibo,
@@ -44,6 +45,7 @@ from percept_obs.observers import (
     spica,
 )
 from percept_obs.observers.parts import first_seen, hats, innovation, output_injection, sigma2
+from percept_obs.system.forms import partition
 from percept_obs.system.motion import TIME
 from percept_obs.system.surfaces.base import X, Y, Z
 
@@ -306,6 +308,36 @@ def test_spica_is_de_lucas_with_critical_damping():
     damping = 2 * sp.sqrt(Lam) * sp.sqrt(sum(entry**2 for entry in BOTH.w))
     difference = sp.Matrix(spica(BOTH).equations.flow) - sp.Matrix(de_luca(BOTH).equations.flow).subs(H, damping)
     assert difference.expand() == sp.zeros(3, 1)
+
+
+def test_de_lucas_depth_error_decays_where_w_is_not_zero():
+    """With constant w and without g, the slowest pole is 0 at w = 0 and the faster, the longer w is."""
+    w, (_, _, y3) = sp.symbols("w1:3", real=True), BOTH.coordinates
+    observer = de_luca(partition(BOTH.coordinates, sp.Matrix([*(k * y3 for k in w), 0]), ["y1", "y2"], w))
+    J = sp.lambdify([w], observer.jacobian().subs(observer.gain_values))
+    slowest = [np.linalg.eigvals(J([0.3 * k, 0.4 * k])).real.max() for k in range(3)]
+    assert slowest[2] < slowest[1] < slowest[0] == 0
+
+
+def test_a_camera_that_turns_only_shows_the_focal_length_and_no_depth():
+    """De Luca et al. 2008: w is 0, and the rate of a pixel f y1 holds f."""
+    f, (y1, y2, y3) = sp.Symbol("f"), BOTH.coordinates
+    form = PerspectiveSystem(rigid(), SURFACES["pinhole"]).measure("y1", "y2")
+    still = dict.fromkeys(form.parameters[3:], 0)
+    turning = form.rate[:2, :].subs(still)
+    assert form.w.subs(still).is_zero_matrix
+    assert not turning.has(y3)
+    assert all(rate.has(f) for rate in (f * turning).subs({y1: y1 / f, y2: y2 / f}, simultaneous=True).expand())
+
+
+def test_de_lucas_observer_recovers_the_depth_from_far_away_and_not_from_too_near():
+    """While the camera approaches, v_z chihat^2 leads an estimate that begins too near to infinity."""
+    motion = rigid(camera_angular_velocity=(0, -0.05, 0), camera_velocity=(0.3, 0.2, 0.1))
+    recording = record(Scenario("approach", motion, (0.5, -0.25, 4), 10, SURFACES["pinhole"]))
+    observer = de_luca(PerspectiveSystem(rigid(), SURFACES["pinhole"]).measure("y1", "y2"))
+    far, near = (track(recording, observer, {"y3": start}) for start in (0, 5))
+    assert abs(far.error[-1, 2]) < 0.05
+    assert near.diverged_at
 
 
 def test_what_an_observer_cannot_do_is_refused():

@@ -36,7 +36,7 @@ from percept_obs.site.pages import ledger_addresses, reference, slug
 from percept_obs.site.slides import NEXT, slides_of
 
 NOTEBOOK = "00_start.ipynb"
-PAPER = "DE_LUCA2008"
+PAPER = "INABA2005"
 WITH_RESULTS = {Path(NOTEBOOK).stem + ".html", slug(PAPER)}
 ADDRESS = "https://example.org/course"
 

@@ -8,6 +8,7 @@ import sympy as sp
 from refusals import refuses
 
 from percept_obs import ekf, ibo, track
+from percept_obs.compile import vectorised
 from percept_obs.labs import observer_lab
 from percept_obs.observers import de_luca
 from percept_obs.studies import servoing
@@ -35,6 +36,18 @@ def test_with_the_true_depth_the_image_error_decays_exponentially():
     held = np.log1p(-found.time[1]) / found.time[1]  # e+ = (1 - lambda T) e
     np.testing.assert_allclose(size / size[0], np.exp(held * found.time), rtol=0.02)
     assert found.overshoot[0] == 0
+
+
+def test_near_the_goal_the_loop_is_stable_with_a_depth_that_is_wrong_by_a_factor_of_four():
+    """Chaumette and Hutchinson 2006: poles of e' = -L(Z) L(c Z)^+ e on the directions that four points can move in."""
+    goal = servoing.SYSTEM.surface.project(servoing.GOAL)
+    matrix = vectorised(FORM.coordinates, list(servoing.INTERACTION))
+
+    def stacked(ratio):
+        return np.stack(matrix(*(goal * [1, 1, 1 / ratio]).T), axis=-1).reshape(-1, len(servoing.VELOCITIES))
+
+    for ratio in (1 / 4, 1 / 2, 1, 2, 4):
+        assert np.linalg.eigvals(-np.linalg.pinv(stacked(ratio)) @ stacked(1)).real.max() < 0
 
 
 @pytest.mark.slow
@@ -88,6 +101,7 @@ def test_of_many_starts():
     assert abs(table.loc["observed", "time"] - table.loc["true", "time"]) < 0.1 < table.loc["constant", "time"] - 3.4
     assert (table["arrived_low"] < table["arrived"]).all()
     assert observer_lab(run(FILTER).recording())
+    assert comparison({"constant": "constant"}, starts(40), ratio=1 / 4)["arrived"].iloc[0] < 0.5
 
 
 test_what_makes_no_sense_is_refused = refuses(
