@@ -11,12 +11,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from ledger_mutations import say_the_same
+from ledger_mutations import say_the_same, slips
 from refusals import refuses
 from sample_sizes import sampled
 
 from percept_obs import papers
-from percept_obs.checking.slips import slips, symbols_in
+from percept_obs.checking.slips import symbols_in
 from percept_obs.papers import (
     CHWA2019,
     INABA2005,

@@ -66,7 +66,7 @@ def pages(tmp_path_factory):
         warnings.simplefilter("ignore")  # the generator's own
         if run:  # tests of its own build it
             patch.setattr(site.lite, "write_lite", _write_no_lite)
-        site.build(target, copies, tell=lambda text: None, exam=True, address=ADDRESS, python=True, run=run)
+        site.build(target, copies, exam=True, address=ADDRESS, python=True, run=run)
     return target
 
 
