@@ -8,7 +8,6 @@ import sympy as sp
 from refusals import refuses
 
 from percept_obs import ekf, ibo, track
-from percept_obs.compile import vectorised
 from percept_obs.labs import observer_lab
 from percept_obs.observers import de_luca
 from percept_obs.studies import servoing
@@ -38,24 +37,13 @@ def test_with_the_true_depth_the_image_error_decays_exponentially():
     assert found.overshoot[0] == 0
 
 
-def test_near_the_goal_the_loop_is_stable_with_a_depth_that_is_wrong_by_a_factor_of_four():
-    """Chaumette and Hutchinson 2006: poles of e' = -L(Z) L(c Z)^+ e on the directions that four points can move in."""
-    goal = servoing.SYSTEM.surface.project(servoing.GOAL)
-    matrix = vectorised(FORM.coordinates, list(servoing.INTERACTION))
-
-    def stacked(ratio):
-        return np.stack(matrix(*(goal * [1, 1, 1 / ratio]).T), axis=-1).reshape(-1, len(servoing.VELOCITIES))
-
-    for ratio in (1 / 4, 1 / 2, 1, 2, 4):
-        assert np.linalg.eigvals(-np.linalg.pinv(stacked(ratio)) @ stacked(1)).real.max() < 0
-
-
 @pytest.mark.slow
 def test_a_wrong_depth_slows_or_overshoots():
     true, near, far = (
         servo(starts(8), *depth, noise=0.0) for depth in (["true"], ["constant", 0.5], ["constant", 4.0])
     )
     assert np.median(near.arrived_at()) > 1.5 * np.median(true.arrived_at())
+    assert np.isfinite([near.arrived_at(), far.arrived_at()]).all()
     assert np.median(far.overshoot) > 0.005 > true.overshoot.max()
 
 
