@@ -141,7 +141,7 @@ def test_what_cannot_be_steered_is_refused(change, message):
 
 
 def test_a_motion_without_a_velocity_is_refused():
-    with pytest.raises(ValueError, match="parameters are none; a rigid"):
+    with pytest.raises(ValueError, match="parameters are t; take a rigid"):
         steering(PerspectiveSystem(affine(STILL, [TIME, 0, 1]), pinhole()))
 
 

@@ -110,7 +110,7 @@ def calls():
         (po.with_point, {"observer": observer}),
         (Equations, {"state": (sp.Symbol("x"),), "flow": (1 - sp.Symbol("x"),)}),
         (ultimate_bound, {"observer": ismo, "disturbance": 0.5, "time": 1.0}),
-        (tolerable_amplification, {"observer": ismo, "noise": 0.1, "hidden": 1.0, "time": 1.0, "margin": 10.0}),
+        (tolerable_amplification, {"observer": ismo, "noise": 0.1, "hidden": 1.0, "time": 1.0}),
         (po.Camera, {"period": 0.1, "noise": po.Uniform(0.1), "dropout": 0.1, "reach": 3.0}),
         (po.Uniform, {"bound": 0.1}),
         (po.Gaussian, {"sigma": 0.1}),
