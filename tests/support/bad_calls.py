@@ -206,7 +206,7 @@ def calls():
             po.bound_map,
             {"system": moving, "seconds": 1.0, "distance": 4.0, "measured": ("y1",), "y1": (-1, 1), "resolution": 4},
         ),
-        (po.steering, {"system": system, "velocity": ("b1", "b2", "b3")}),
+        (po.steering, {"system": system}),
         (po.steered, {"scenario": scenario, "gain": 5.0}),
         (gramian.gramian, {"recording": seen, "window": 1.0}),
         (gramian.linear_gramian, {"recording": seen, "window": 1.0}),
