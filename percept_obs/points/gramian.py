@@ -297,5 +297,5 @@ def _windows(recording: Recording, window: float, form: PointsForm, information:
     used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
     time = recording.time[used]
     begins, matrices = window_integrals(time, information(used), transitions(form, time)[:, :-1, :-1], window)
-    states = None if recording.truth is None or form is not recording.view else recording.truth[used][begins]
+    states = None if recording.truth is None else recording.truth[used][begins]
     return Gramian(form.names, time[begins], matrices, window, states=states)
