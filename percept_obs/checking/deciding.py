@@ -76,10 +76,10 @@ def rational(formula: sp.Basic) -> bool:
     )
 
 
-def points(*formulas: sp.Basic, exact: bool = False, opaque: bool = False) -> Iterator[Point]:
+def points(*formulas: sp.Basic, opaque: bool = False) -> Iterator[Point]:
     """Yield random points at which all formulas have a value; `TRIALS` are tried."""
     for seed in range(TRIALS):
-        point = Point(seed, exact, opaque)
+        point = Point(seed, opaque=opaque)
         with suppress(NoValue):
             for formula in formulas:
                 point(formula)

@@ -20,7 +20,6 @@ PARTS, TRIALS, BRANCHES = 5040, 60, 6
 """Denominators of multiples of angles divide the first; points that are tried; roots and kinks that are told apart."""
 OPAQUE = "opaque"
 CONDITIONS = (sp.And, sp.Or, sp.Not)
-_HALF = sp.Rational(1, 2)
 
 
 class Unproved(Exception):

@@ -71,9 +71,9 @@ def read(text: str, letters: Mapping[str, Any], labels: Iterable[str] = (), func
     return _Lines(Words(text, letters, labels, functions or {})).read()
 
 
-def words_of(text: str, letters: Mapping[str, Any] | None = None, labels: Iterable[str] = ()) -> list[Token]:
+def words_of(text: str) -> list[Token]:
     """Return the tokens of a text as `read` understands them, also where it is no formula; the last is "END"."""
-    return Words(text, letters or {}, labels, {}).tokens(strict=False)
+    return Words(text, {}, (), {}).tokens(strict=False)
 
 
 class _Lines:

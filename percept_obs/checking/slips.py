@@ -26,12 +26,10 @@ class Moves:
     A term is multiplied by one of the factors, 0 drops it; exponents are added, counted away from 0.
     """
 
-    factors: Sequence[sp.Rational] = (-sp.S.One, sp.Integer(2))
+    factors: Sequence[sp.Rational]
     exponents: Sequence[int] = (1,)
 
 
-PRINTS = Moves()
-"""Slips in a printed formula."""
 MISTAKES = Moves((-sp.S.One, sp.Integer(2), sp.S.Zero))
 """Slips that a student makes: a term may be dropped."""
 MENDS = Moves((-sp.S.One, sp.S.Half, sp.Integer(2), sp.S.Zero, sp.Rational(1, 3), sp.Integer(3)), (-1, 1))
@@ -82,17 +80,7 @@ def siblings_in(pool: Iterable[sp.Basic]) -> Siblings:
     return siblings
 
 
-def slips(
-    printed: tuple[sp.Basic, ...], pool: Iterable[sp.Basic], moves: Moves = PRINTS
-) -> Iterator[tuple[sp.Basic, ...]]:
-    """Yield the formulas with one sign, factor, exponent or symbol changed; those of the pool may be mistaken."""
-    siblings = siblings_in(pool)
-    for k, formula in enumerate(printed):
-        for slip in slips_in(formula, siblings, moves):
-            yield (*printed[:k], slip.formula, *printed[k + 1 :])
-
-
-def slips_in(node: sp.Basic, siblings: Siblings, moves: Moves = PRINTS) -> Iterator[Slip]:
+def slips_in(node: sp.Basic, siblings: Siblings, moves: Moves) -> Iterator[Slip]:
     """Yield every single slip in a formula."""
     if is_symbol(node):
         for other in siblings.get(family(node), []):

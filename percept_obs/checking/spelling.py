@@ -41,7 +41,6 @@ REPLACED = {
 _RELATION = re.compile(r"[=<>]|\\(neq?|leq?|geq?|lt|gt|equiv|triangleq|coloneqq)(?![A-Za-z])")
 _FORMULA = re.compile(r"[+*/^=<>()\[\]{}&\\]|(^|\s)-|-(\s|$)|[\d_']\w*\s+\w*[\d_']")
 _SIGN_ALONE = re.compile(r"[\s$`\\()\[\]]*([-+*/^]|plus|minus|times|over)[\s$`\\()\[\]]*")
-_WORD = re.compile(r"(?<![\w\\])[A-Za-z]{2,}(?!\w)")
 _VERB = re.compile(r"\s*([Ii]s|[Aa]re|[Hh]ave|[Dd]enotes?|[Ff]ollows|[Gg]ives?|[Yy]ields?|[Tt]hat|[Ww]hich)\b")
 _SAID = re.compile(r"\\(text|textrm|mbox|mathrm)\s*\{([^{}]*)\}")
 _WORDS_OF_CASES = re.compile(r"\s*(for|if|when|otherwise|else)[,.]?\s*|\s*\w+\s*")

@@ -8,7 +8,6 @@ from percept_obs.figures.base import Array
 from percept_obs.system.surfaces import POINT, ImagingSurface
 from percept_obs.system.view import View
 from percept_obs.tracking.run import Run
-from percept_obs.tracking.verdict import TOLERANCE
 
 
 def finite(values: ArrayLike) -> Array:
@@ -78,11 +77,9 @@ def joined(*sentences: str) -> str:
     return " ".join(filter(None, sentences))
 
 
-def story(run: Run, tolerance: float = TOLERANCE) -> str:
+def story(run: Run) -> str:
     """Return the verdict on a run as a sentence, with missing estimates and lost samples."""
-    if not tolerance > 0:
-        raise ValueError(f"the tolerance is {tolerance}; it must be positive")
-    verdict = run.verdict(tolerance)
+    verdict = run.verdict()
     columns = [run.recording.names.index(name) for name in run.measured]
     lost = int(np.isnan(run.recording.outputs[:, columns]).any(axis=1).sum())
     missing = int(np.isnan(run.estimate).any(axis=1).sum())

@@ -30,8 +30,8 @@ JUDGED: dict[str, Any] = {"color": look.BLACK, "linestyle": "-"}
 """Look of the error that the verdict judges."""
 
 
-@figure("it is no run, the number of axes is wrong, or the tolerance is not positive")
-def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOLERANCE) -> Drawing:
+@figure("it is no run, or the number of axes is wrong")
+def signals(run: Run, axes: Sequence[Axes] | None = None) -> Drawing:
     """Outputs, estimates and errors of a run over time.
 
     One row a coordinate, with samples as dots, the truth solid and the estimate dashed, in a band of two claimed
@@ -42,8 +42,6 @@ def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOL
     Parameters
     ----------
     run : Run
-    tolerance : float
-        Bound on the relative error, see `Run.outcome`.
 
     Examples
     --------
@@ -65,7 +63,7 @@ def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOL
         f"Outputs and estimates of the {run.observer.name} observer over {describe.times(run)}, with "
         f"{', '.join(run.measured)} measured and {', '.join(run.observer.form.hidden)} hidden."
     )
-    yield describe.story(run, tolerance)
+    yield describe.story(run)
     for column, ax in enumerate(upper):
         yield _coordinate(ax, run, column)
     residuals = np.abs(run.error if known else run.innovation).T
@@ -78,7 +76,7 @@ def signals(run: Run, axes: Sequence[Axes] | None = None, tolerance: float = TOL
         looks, labels = [*looks, JUDGED], [*labels, names[-1]]
     curves.draw_errors(last, run.elapsed, residuals, labels, looks)
     if known:
-        last.axhline(tolerance, color=look.GREY, linewidth=1, linestyle=(0, (2, 2)))
+        last.axhline(TOLERANCE, color=look.GREY, linewidth=1, linestyle=(0, (2, 2)))
     last.set_ylabel(f"|{what}|")
     yield curves.log(last, residuals, f"the {what}s")
     yield _levels(run, residuals, names, what)
@@ -138,7 +136,6 @@ def runs_over_time(
     labels: Sequence[str] | None = None,
     coordinate: str | None = None,
     axes: Sequence[Axes] | None = None,
-    tolerance: float = TOLERANCE,
     bound: Bound | None = None,
 ) -> Drawing:
     """One coordinate as several observers estimate it, and their errors.
@@ -152,8 +149,6 @@ def runs_over_time(
         On one recording, or on several of the same point, such as with and without noise.
     coordinate : str, optional
         Such as "y1"; the inverse distance when left out.
-    tolerance : float
-        Bound on the relative error of the distance, for the verdicts.
     bound : Bound, optional
         From `cramer_rao` on the same truth: the least standard deviation, drawn under the errors.
 
@@ -198,7 +193,7 @@ def runs_over_time(
     )
     for name, run, each in zip(labels, runs, look.styles(runs), strict=True):
         claim = curves.draw_claim_of_coordinate(upper, run, column, each["color"])
-        yield describe.joined(f"{name}:", describe.story(run, tolerance), claim)
+        yield describe.joined(f"{name}:", describe.story(run), claim)
     yield outside
     yield curves.log(lower, errors, "the errors")
     yield least

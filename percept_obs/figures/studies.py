@@ -310,8 +310,10 @@ def _with_unit(values: Any) -> str:
 
 
 @figure("it is something else, or fewer than one entry is asked for")
-def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | None = None) -> Drawing:
+def entries(found: Sensitivity, most: int = 4, ax: Axes | None = None) -> Drawing:
     """By how much the distance moves when one entry of the motion is off, for those entries that matter most.
+
+    It is off by a hundredth of the motion's size: of all of A, or of all of b.
 
     Parameters
     ----------
@@ -319,8 +321,6 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
         From `percept_obs.studies.sensitivity.sensitivity`.
     most : int
         How many entries to draw.
-    share : float
-        By which share of the motion's size an entry is off: of all of A, or of all of b.
 
     Examples
     --------
@@ -334,12 +334,12 @@ def entries(found: Sensitivity, most: int = 4, share: float = SHARE, ax: Axes | 
     if most < 1:
         raise ValueError(f"the {most} most important entries were asked for; draw one at least")
     ax = canvas(ax, 3.2)
-    ranking, changes = found.ranking(share), 100 * found.distance_change(share)
+    ranking, changes = found.ranking(), 100 * found.distance_change()
     drawn = list(ranking)[:most]
     shown = np.array([changes[:, found.entries.index(name)] for name in drawn])
     curves.draw(ax, found.run.elapsed, shown, [describe.letter(name) for name in drawn])
     ax.set(xlabel="time (s)", ylabel=f"{describe.depth_or_range(found.run.view)[0]} moves by (%)")
-    size = f"{100 * share:g} % of the motion's size"
+    size = f"{100 * SHARE:g} % of the motion's size"
     yield f"By how much the estimated distance moves when one entry of the motion is off by {size}, for {len(drawn)}."
     yield "; ".join(f"{name}: {100 * ranking[name]:.2g} % in the median of the last half" for name in drawn) + "."
     others = list(ranking)[most:]

@@ -113,13 +113,8 @@ class Bound:
         assert self.recording.truth is not None
         return self.deviation[:, -1] / self.recording.view.inverse(self.recording.truth)
 
-    def kept(self, sample: int = -1) -> tuple[Array, Array]:
-        """Standard deviations of hidden directions at the start after a sample, as shares of those before any.
-
-        Parameters
-        ----------
-        sample : int
-            Index of the sample.
+    def kept(self) -> tuple[Array, Array]:
+        """Standard deviations of hidden directions at the start after all samples, as shares of those before any.
 
         Returns
         -------
@@ -131,7 +126,7 @@ class Bound:
         hidden = positions(self.form, self.form.hidden)
         root = np.linalg.cholesky(self.prediction[0])
         # (P0^-1 + J)^-1 with P0 = root root^T, without inverting P0
-        after = root @ np.linalg.solve(np.eye(len(root)) + root.T @ self.information[sample] @ root, root.T)
+        after = root @ np.linalg.solve(np.eye(len(root)) + root.T @ self.information[-1] @ root, root.T)
         before = np.linalg.cholesky(self.prediction[0][np.ix_(hidden, hidden)])
         inverse = np.linalg.inv(before)
         values, vectors = np.linalg.eigh(inverse @ after[np.ix_(hidden, hidden)] @ inverse.T)

@@ -10,7 +10,6 @@ import numpy as np
 
 from percept_obs.compile import Array, Flags
 from percept_obs.observability.bound import Bound
-from percept_obs.observability.linearised import names_of
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
 
@@ -90,8 +89,8 @@ class Efficiency:
 
 
 @checked
-def efficiency(runs: Sequence[Run], bound: Bound, coordinate: str | None = None) -> Efficiency:
-    """Root mean square error of runs over the bound: 1 at best, for observers without bias.
+def efficiency(runs: Sequence[Run], bound: Bound) -> Efficiency:
+    """Root mean square error of the inverse distance over the bound: 1 at best, for observers without bias.
 
     Parameters
     ----------
@@ -99,8 +98,6 @@ def efficiency(runs: Sequence[Run], bound: Bound, coordinate: str | None = None)
         Two or more on the same truth, each with noise and start of its own, drawn as the bound supposes.
     bound : Bound
         From `cramer_rao`, on a recording of the same truth and samples.
-    coordinate : str, optional
-        Such as "y1"; the last one, the inverse distance, when left out.
 
     Returns
     -------
@@ -110,7 +107,7 @@ def efficiency(runs: Sequence[Run], bound: Bound, coordinate: str | None = None)
     Raises
     ------
     ValueError
-        If there are fewer than two runs, their truth is not the bound's, or there is no such coordinate.
+        If there are fewer than two runs, or their truth is not the bound's.
 
     See Also
     --------
@@ -126,13 +123,11 @@ def efficiency(runs: Sequence[Run], bound: Bound, coordinate: str | None = None)
     >>> 0.8 < efficiency(runs, cramer_rao(seen[0], form)).mean(5, 10) < 1.3
     True
     """
-    names = names_of(bound.form)
-    name = coordinate or names[-1]
-    least, truth = bound.of(name), bound.recording.truth
+    truth = bound.recording.truth
     if len(runs) < 2:
         raise ValueError(f"{len(runs)} runs tell no mean square; give two or more, with noise of their own")
     for number, run in enumerate(runs, 1):
         own = run.recording.truth
         if own is None or truth is None or own.shape != truth.shape or not np.allclose(own, truth):
             raise ValueError(f"run {number} is on another truth than the bound; both must follow the same point")
-    return Efficiency(bound.elapsed, np.array([run.error[:, names.index(name)] for run in runs]), least)
+    return Efficiency(bound.elapsed, np.array([run.error[:, -1] for run in runs]), bound.deviation[:, -1])

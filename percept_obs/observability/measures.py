@@ -8,9 +8,8 @@ from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from percept_obs.observability.bound import Bound, Prior, cramer_rao
+from percept_obs.observability.bound import Bound, cramer_rao
 from percept_obs.observability.directions import in_words
 from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
 from percept_obs.observability.lie import LieRanks, lie_ranks
@@ -230,14 +229,13 @@ def how_observable(
     recording: Recording,
     system: System,
     window: float | None = None,
-    prior: Prior = None,
-    noise_variance: ArrayLike | None = None,
 ) -> Observability:
     """Compute every measure of observability along the true trajectory of a recording.
 
     They are: w w^T at an instant, for one output also as Ma 2005, (20), prints it; persistency of excitation over a
     window; the rank of the Lie derivatives' differentials; the Gramian of the linearised error system over a window,
-    and from perturbed runs; and the Cramer-Rao bound at the end.
+    and from perturbed runs; and the Cramer-Rao bound at the end, for a recording without noise of the variance that
+    the extended Kalman filter believes.
 
     Parameters
     ----------
@@ -247,8 +245,6 @@ def how_observable(
         Which outputs are measured; a perspective system stands for all image coordinates.
     window : float, optional
         Seconds; 10, or a quarter of a recording that is shorter than 40 s, when left out.
-    prior, noise_variance : as in cramer_rao, optional
-        For a recording without noise the variance that the extended Kalman filter believes.
 
     Returns
     -------
@@ -274,7 +270,6 @@ def how_observable(
     """
     form = matching_form(system, recording)
     window = min(USUAL_WINDOW, float(recording.elapsed[-1]) / 4) if window is None else window
-    variance = noise_variance if noise_variance is not None else recording.effective_variance or NOISE_VARIANCE
     error, canonical = error_gramian(recording, form, window), not form.culprits
     return Observability(
         form,
@@ -284,5 +279,5 @@ def how_observable(
         lie_ranks(recording, form),
         error,
         empirical_gramian(recording, form, window),
-        cramer_rao(recording, form, prior, variance),
+        cramer_rao(recording, form, noise_variance=recording.effective_variance or NOISE_VARIANCE),
     )

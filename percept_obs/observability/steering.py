@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import count
@@ -93,16 +92,14 @@ class Steering:
 
 
 @checked
-def steering(system: PerspectiveSystem, velocity: Sequence[str] | None = None) -> Steering:
+def steering(system: PerspectiveSystem) -> Steering:
     """Derive the turn of a velocity by which the excitation grows fastest; it needs no distance.
 
     Parameters
     ----------
     system : PerspectiveSystem
-        All of its image coordinates are measured.
-    velocity : sequence of three str, optional
-        Parameters of the motion that may be chosen; the camera's velocity of a rigid motion and b of an affine one
-        when left out.
+        All of its image coordinates are measured.  Turned is the camera's velocity of a rigid motion, or b of an
+        affine one.
 
     Returns
     -------
@@ -112,7 +109,7 @@ def steering(system: PerspectiveSystem, velocity: Sequence[str] | None = None) -
     Raises
     ------
     ValueError
-        If the motion has no such parameters.
+        If the motion has neither.
 
     See Also
     --------
@@ -130,19 +127,14 @@ def steering(system: PerspectiveSystem, velocity: Sequence[str] | None = None) -
     2*b1 - 2*b3*y1
     """
     known = {symbol.name: symbol for symbol in system.motion.parameters}
-    names = next((each for each in VELOCITIES if set(each) <= set(known)), ()) if velocity is None else tuple(velocity)
-    if len(set(names)) != len(POINT) or not set(names) <= set(known):
-        raise ValueError(
-            f"the velocity has the names {', '.join(names) or 'none'}; give three of the motion's parameters, which "
-            f"are {', '.join(known) or 'none'}"
-        )
+    names = next((each for each in VELOCITIES if set(each) <= set(known)), None)
+    if names is None:
+        raise ValueError(f"the motion's parameters are {', '.join(known) or 'none'}; take a rigid() or affine() motion")
     return Steering(system, tuple(known[name] for name in names))
 
 
 @checked
-def steered(
-    scenario: Scenario, gain: float = 5.0, velocity: Sequence[str] | None = None, step: float = LONGEST_STEP
-) -> Scenario:
+def steered(scenario: Scenario, gain: float = 5.0) -> Scenario:
     """Steer a scenario's velocity towards more excitation, at the same speed.
 
     With the velocity v, v' = kappa (1 - v v^T / v^T v) d|w|^2 / dv.  It depends on the image and not on the distance,
@@ -154,10 +146,6 @@ def steered(
         With a constant motion, whose velocity is that of the beginning and not zero.
     gain : float
         Gain kappa in 1/s; positive.
-    velocity : sequence of three str, optional
-        See `steering`.
-    step : float
-        Seconds from one sample of the velocity to the next; a spline connects them.
 
     Returns
     -------
@@ -167,7 +155,7 @@ def steered(
     Raises
     ------
     ValueError
-        If the motion varies or has no such parameters, the velocity is zero, or a number is not positive.
+        If the motion varies, the velocity is zero, or the gain is not positive.
 
     See Also
     --------
@@ -188,10 +176,10 @@ def steered(
     from scipy.interpolate import CubicSpline
 
     motion, surface = scenario.motion, scenario.surface
-    positive(gain=gain, step=step)
+    positive(gain=gain)
     if not motion.parameters or set(motion.values) != set(motion.parameters):
         raise ValueError(f"the {motion.name} motion varies or has no parameters; steer a constant affine(A, b)")
-    found = steering(PerspectiveSystem(replace(motion, signal=None), surface), velocity)
+    found = steering(PerspectiveSystem(replace(motion, signal=None), surface))
     start = [motion.values[symbol] for symbol in found.velocity]
     if not np.any(start):
         raise ValueError("the velocity is zero, and turning does not change that; give the camera a speed")
@@ -199,12 +187,12 @@ def steered(
     turning = gain * found.turning.xreplace(dict(zip(surface.image_coordinates, surface.image, strict=True)))
     fixed = {s: value for s, value in {**motion.values, **surface.values}.items() if s not in found.velocity}
     rate = vectorised(state, [*(motion.A * sp.ImmutableMatrix(POINT) + motion.b), *turning], fixed)
-    size = scenario.duration / step * len(motion.parameters)
-    limit(size, "numbers of a velocity", "take a longer step or a shorter duration of the scenario")
-    times = step * np.arange(int(np.ceil(scenario.duration / step - 1e-9)) + 2, dtype=float)  # beyond the end
+    size = scenario.duration / LONGEST_STEP * len(motion.parameters)
+    limit(size, "numbers of a velocity", "take a shorter duration of the scenario")
+    times = LONGEST_STEP * np.arange(int(np.ceil(scenario.duration / LONGEST_STEP - 1e-9)) + 2.0)  # beyond the end
     refused = ValueError(
-        f"steered with gain = {gain} and step = {step} the motion leaves every bound or turns too fast within "
-        f"{scenario.duration:.4g} s; take a smaller gain or step, or a shorter duration of the scenario"
+        f"steered with gain = {gain} the motion leaves every bound or turns too fast within "
+        f"{scenario.duration:.4g} s; take a smaller gain, or a shorter duration of the scenario"
     )
     evaluations = count(1)
 

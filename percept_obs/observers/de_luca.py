@@ -35,7 +35,10 @@ def de_luca(form: CanonicalForm) -> Derived:
         x1hat' = H e + w^T x2hat + phi
         x2hat' = Lambda w e + g(x1, x2hat)
 
-    It is the identifier-based observer with H = G A and Lambda = -G^2 P, without its reset.
+    It is the identifier-based observer with H = G A and Lambda = -G^2 P, without its reset.  So whether it recovers a
+    depth depends on the start: while the camera approaches, g holds v_z chihat^2 of the inverse depth chihat, and leads
+    an estimate that begins too near to infinity.  While the camera only turns, or moves along the point's ray, w is 0
+    and the image shows no depth; for a constant w other than 0 all errors decay.
 
     See Also
     --------

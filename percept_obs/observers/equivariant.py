@@ -68,6 +68,7 @@ def equivariant_filter(form: CanonicalForm) -> Derived:
         k = S h^T / (h S h^T + R),  c = k (y_j - yhat_j),  G <- G (I + c^/2)^2,  S <- S - k h S
 
     (I + c^/2)^2 is the exponential of c^ to the second order, and scales by a square, so that a range stays positive.
+    With the mean of both gradients h d misses a direction that is turned by s by s^3/12, with either one by s^2.
 
     See Also
     --------

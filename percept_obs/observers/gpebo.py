@@ -57,6 +57,7 @@ def gpebo(form: CanonicalForm) -> Derived:
         Q' = phi^T phi - sigma^2 N - l Q,  Y' = phi^T r - sigma^2 n - l Y
         thetahat' = gamma D (adj(Q) Y - D thetahat) / (mu + D^2),  D = det Q
 
+    Without noise Y = Q theta, so that each constant's error shrinks with the rate gamma D^2 / (mu + D^2) by itself.
     N and n are the bias of squared noise: sums of (dphi/dy)^T dphi/dy and (dphi/dy)^T dr/dy over the measured outputs.
     Division by |Phi| keeps a motion that grows from outweighing what was seen before.
 

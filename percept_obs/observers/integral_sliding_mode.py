@@ -186,14 +186,12 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
 
 
 @checked
-def tolerable_amplification(
-    observer: Observer, noise: float, hidden: float, time: float = 0.0, margin: float = 10.0
-) -> float:
+def tolerable_amplification(observer: Observer, noise: float, hidden: float, time: float = 0.0) -> float:
     """Return the gain `largest_amplification` at which noise makes no spike that looks like an estimate.
 
     White noise of standard deviation sigma on the samples passes into ghat with the factor k1 + 2 gamma c, and from
-    there into the hidden coordinates with the amplification.  The value keeps that below a share of what is sought.  It
-    is hidden / (margin noise (k1 + 2 gamma c)), with c at that time.
+    there into the hidden coordinates with the amplification.  The value keeps ten deviations of that below what is
+    sought.  It is hidden / (10 noise (k1 + 2 gamma c)), with c at that time.
 
     Parameters
     ----------
@@ -205,8 +203,6 @@ def tolerable_amplification(
         Size of the hidden coordinate that must not be lost in it.
     time : float
         Seconds at the end of the run; with b > 0 the factor grows.
-    margin : float
-        How many standard deviations must fit into `hidden`.
 
     Raises
     ------
@@ -225,10 +221,10 @@ def tolerable_amplification(
     >>> [round(tolerable_amplification(observer, noise, 0.2), 3) for noise in (1e-4, 1e-3)]
     [4.444, 0.444]
     """
-    if not (noise > 0 and hidden > 0 and margin > 0 and margin * noise > 0 and 0 <= time < math.inf):
-        raise ValueError("noise, hidden and margin must be positive and the time finite, from 0 on")
+    if not (noise > 0 and hidden > 0 and 0 <= time < math.inf):
+        raise ValueError("noise and hidden must be positive and the time finite, from 0 on")
     gains = observer.gain_values
-    return hidden / (margin * noise * (gains[k1] + 2 * gains[gamma] * (gains[a] + gains[b] * time)))
+    return hidden / (10 * noise * (gains[k1] + 2 * gains[gamma] * (gains[a] + gains[b] * time)))
 
 
 def _pseudo_input(estimated_rate: sp.Expr, se: sp.Expr, s: sp.Expr, sgn: Switch) -> sp.Expr:

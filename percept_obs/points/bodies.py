@@ -122,9 +122,6 @@ def body_with_origin(
     camera_angular_velocity: Coefficients | None = None,
     camera_velocity: Coefficients | None = None,
     body_angular_velocity: Coefficients | None = None,
-    origin_velocity: Coefficients | None = None,
-    times: ArrayLike | None = None,
-    surface: ImagingSurface | None = None,
 ) -> PointsForm:
     """Return the form of a rigid body about an origin that no point marks: x = (o, d_1, ..., d_p), X_k = o + d_k.
 
@@ -134,10 +131,8 @@ def body_with_origin(
 
     Parameters
     ----------
-    points, camera_angular_velocity, camera_velocity, body_angular_velocity, times, surface
-        See `rigid_body`.
-    origin_velocity : array of shape (3,) or (K, 3), or function of time, optional
-        Velocity of the origin in the world, in m/s.
+    points, camera_angular_velocity, camera_velocity, body_angular_velocity
+        See `rigid_body`.  The origin rests in the world, if any of them is given.
 
     Warns
     -----
@@ -155,10 +150,10 @@ def body_with_origin(
     ('o_x', 'o_y', 'o_z', 'd1_x', 'd1_y', 'd1_z', 'd2_x', 'd2_y', 'd2_z')
     """
     _check_count(points)
-    velocities = (camera_angular_velocity, camera_velocity, body_angular_velocity, origin_velocity)
-    motion = _body_motion("rigid body with an origin", points + 1, velocities, times)
+    velocities = (camera_angular_velocity, camera_velocity, body_angular_velocity, None)
+    motion = _body_motion("rigid body with an origin", points + 1, velocities, None)
     others = range(1, points + 1)
-    return form_of(motion, ["o", *(f"d{k}" for k in others)], [[0, k] for k in others], surface)
+    return form_of(motion, ["o", *(f"d{k}" for k in others)], [[0, k] for k in others], None)
 
 
 def _body_motion(name: str, vectors: int, velocities: tuple[Any, ...], times: ArrayLike | None) -> Motion:

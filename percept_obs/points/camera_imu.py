@@ -11,7 +11,6 @@ from percept_obs.points.form import PointsForm
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix, riccati
 from percept_obs.system.inertial import a, w
 from percept_obs.system.motion import bound, cross
-from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.validation import Coefficients, checked, positive
 
 
@@ -21,8 +20,6 @@ def camera_imu(
     turning: Coefficients | None = None,
     force: Coefficients | None = None,
     times: ArrayLike | None = None,
-    bias: bool = False,
-    surface: ImagingSurface | None = None,
 ) -> PointsForm:
     """Return the form of landmarks at rest, seen by a camera with an IMU: x = (p_1, ..., p_n, v, g).
 
@@ -38,10 +35,6 @@ def camera_imu(
         w in rad/s and a in m/s^2; symbols when left out.
     times : array of shape (K,), optional
         Times in seconds of samples.
-    bias : bool
-        True for one more vector, a constant bias d of the accelerometer, which a - d is free of.
-    surface : ImagingSurface, optional
-        The pinhole when left out.
 
     Raises
     ------
@@ -67,18 +60,18 @@ def camera_imu(
     positive(points=points)
     turned, one, v = cross(-w), sp.ImmutableMatrix(sp.eye(3)), points
     blocks = {(k, k): turned for k in range(points + 2)} | {(k, v): -one for k in range(points)} | {(v, v + 1): one}
-    if bias:
-        blocks[v, v + 2] = -one
-    names = [*(f"p{k + 1}" for k in range(points)), "v", "g", *(["d"] if bias else [])]
+    names = [*(f"p{k + 1}" for k in range(points)), "v", "g"]
     A, b = placed(len(names), blocks), placed(len(names), {(v, 0): a}, columns=1)
     motion = bound("camera and IMU", A, b, [(turning, w), (force, a)], times)
-    return form_of(motion, names, [[k] for k in range(points)], surface)
+    return form_of(motion, names, [[k] for k in range(points)], None)
+
+
+MEMORY = 20.0
+"""Seconds after which images are forgotten."""
 
 
 @checked
-def trusting(
-    noise: float, period: float, distance: float, spread: float, memory: float = 20.0, step: float = LONGEST_STEP
-) -> LyapunovMatrix:
+def trusting(noise: float, period: float, distance: float, spread: float) -> LyapunovMatrix:
     """Return P of `riccati` that trusts a start as far as it is known, against images with their noise.
 
     P counts information in what images with 1 m^2 of noise tell in a second.  So a start with the standard deviation
@@ -95,10 +88,6 @@ def trusting(
         Of the points, in metres, roughly.
     spread : float
         Standard deviation of the start, in metres and metres a second.
-    memory : float
-        Seconds after which images are forgotten.
-    step : float
-        Longest step in seconds, as for `track`.
 
     Raises
     ------
@@ -115,5 +104,5 @@ def trusting(
     >>> print(f"{float(trusting(noise=1e-3, period=0.02, distance=4, spread=2).start):.0e}")
     1e-04
     """
-    positive(noise=noise, period=period, distance=distance, spread=spread, memory=memory, step=step)
-    return riccati(max(period * (noise * distance / spread) ** 2, step / 100), 1 / memory)
+    positive(noise=noise, period=period, distance=distance, spread=spread)
+    return riccati(max(period * (noise * distance / spread) ** 2, LONGEST_STEP / 100), 1 / MEMORY)

@@ -87,7 +87,7 @@ class Gramian(Windows):
 
 
 @checked
-def gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
+def gramian(recording: Recording, window: float) -> Gramian:
     """Return the information in the images of a window about the state: the integral in (14), Inaba et al. 2005.
 
     There is a window for each sample from which it fits into the recording.
@@ -98,13 +98,11 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
         Its true images are used where there is a truth, else its outputs; points count while they are seen.
     window : float
         Seconds.
-    form : PointsForm, optional
-        System with the believed motion; the recording's own when left out.
 
     Raises
     ------
     ValueError
-        If the window is not positive or longer than the recording, or the form has another number of points.
+        If the window is not positive or longer than the recording.
 
     See Also
     --------
@@ -119,16 +117,12 @@ def gramian(recording: Recording, window: float, form: PointsForm | None = None)
     >>> gramian(record(moving_body(1), 5, Camera(0.1)), 2).holds
     True
     """
-    seen = points_form(recording)
-    form = form or seen
-    if form.points != seen.points:
-        raise ValueError(f"the form has {form.points} points, the recording {seen.points}")
-    images = _true_images(recording)
+    form, images = points_form(recording), _true_images(recording)
     return _windows(recording, window, form, lambda k: form.information(images[k]))
 
 
 @checked
-def linear_gramian(recording: Recording, window: float, form: PointsForm | None = None) -> Gramian:
+def linear_gramian(recording: Recording, window: float) -> Gramian:
     """Return the information if the points were seen with their distances: the integral of Phi^T C^T C Phi.
 
     The pair (C, A) is uniformly observable if its smallest eigenvalue stays above a positive number.  Where (14) holds
@@ -136,7 +130,7 @@ def linear_gramian(recording: Recording, window: float, form: PointsForm | None 
 
     Parameters
     ----------
-    recording, window, form
+    recording, window
         See `gramian`.  Points count while they are seen.
 
     Raises
@@ -157,7 +151,7 @@ def linear_gramian(recording: Recording, window: float, form: PointsForm | None 
     >>> gramian(seen, 2).holds, linear_gramian(seen, 2).holds
     (False, True)
     """
-    form = form or points_form(recording)
+    form = points_form(recording)
 
     def information(k: Indices) -> Array:
         C = np.where(recording.seen[k][..., None, None], form.blocks, 0.0).reshape(len(k), -1, form.states)
@@ -303,5 +297,5 @@ def _windows(recording: Recording, window: float, form: PointsForm, information:
     used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
     time = recording.time[used]
     begins, matrices = window_integrals(time, information(used), transitions(form, time)[:, :-1, :-1], window)
-    states = None if recording.truth is None or form is not recording.view else recording.truth[used][begins]
+    states = None if recording.truth is None else recording.truth[used][begins]
     return Gramian(form.names, time[begins], matrices, window, states=states)

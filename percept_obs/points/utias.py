@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -15,15 +14,13 @@ from percept_obs.validation import checked
 
 
 @checked
-def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Sequence[int] | None = None) -> Recording:
+def load_utias_points(path: str | os.PathLike[str] | None = None) -> Recording:
     """Read all landmarks that the moving camera follows, as points of one state in its frame.
 
     Parameters
     ----------
     path : path, optional
-        See `find_utias`.
-    landmarks : sequence of int, optional
-        Numbers of the landmarks; all that have a track, in increasing order, when left out.
+        See `find_utias`, also for the exceptions.
 
     Returns
     -------
@@ -31,11 +28,6 @@ def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Seq
         Images of the tracks of `utias_tracks`, from the first track's beginning to the last one's end, NaN between
         them.  The truth has all landmarks at all times, from the fitted poses; `distances` has the independent
         ``"stereo"`` depth.
-
-    Raises
-    ------
-    ValueError
-        If a landmark has no track.
 
     See Also
     --------
@@ -48,17 +40,12 @@ def load_utias_points(path: str | os.PathLike[str] | None = None, landmarks: Seq
     (1366, 12, 2)
     """
     tables = utias_tracks(path)
-    followed = sorted({track.point for track in tables.tracks})
-    chosen = followed if landmarks is None else list(landmarks)
-    missing = sorted(set(chosen) - set(followed))
-    if missing or len(set(chosen)) != len(chosen) or not chosen:
-        raise ValueError(f"the landmarks are {chosen}; name some of {followed}, each once")
-    tracks = [track for track in tables.tracks if track.point in chosen]
+    tracks, followed = tables.tracks, sorted({track.point for track in tables.tracks})
     rows = slice(min(track.first for track in tracks), max(track.last for track in tracks) + 1)
-    truth = np.hstack([tables.points[rows, landmark] for landmark in chosen])
-    source = f"UTIAS, {len(chosen)} landmarks, {len(tracks)} tracks"
-    view = independent_points(tables.motion, len(chosen))
-    return tables.recording(rows, chosen, view, truth, source, PIXEL_SIGMA)
+    truth = np.hstack([tables.points[rows, landmark] for landmark in followed])
+    source = f"UTIAS, {len(followed)} landmarks, {len(tracks)} tracks"
+    view = independent_points(tables.motion, len(followed))
+    return tables.recording(rows, followed, view, truth, source, PIXEL_SIGMA)
 
 
 OUT_OF_SIGHT = LONGEST_GAP

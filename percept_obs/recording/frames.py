@@ -101,8 +101,12 @@ def _encoded(image: Any, number: int) -> bytes:
     return written.getvalue()
 
 
+BALL = 0.15
+"""Radius of the ball that is drawn, in metres."""
+
+
 @checked
-def render(recording: Recording, count: int = 60, size: int = 160, radius: float = 0.15) -> Frames:
+def render(recording: Recording, count: int = 60, size: int = 160) -> Frames:
     """Return a film drawn of a recording with its truth: a ball around the point, which grows as it comes nearer.
 
     Parameters
@@ -113,8 +117,6 @@ def render(recording: Recording, count: int = 60, size: int = 160, radius: float
         Number of frames, spread over the recording.
     size : int
         Side of a frame in pixels.
-    radius : float
-        Of the ball, in metres.
 
     Raises
     ------
@@ -146,7 +148,7 @@ def render(recording: Recording, count: int = 60, size: int = 160, radius: float
     left, right, lower, upper = middle[0] - half, middle[0] + half, middle[1] - half, middle[1] + half
     along = np.linspace(left, right, size)[None, :], np.linspace(upper, lower, size)[:, None]
     floor = 0.8 + 0.06 * np.sign(np.sin(8 * np.pi * along[0]) * np.sin(8 * np.pi * along[1]))
-    images = [_with_ball(floor, *along, each) for each in zip(y1, y2, radius * inverse, strict=True)]
+    images = [_with_ball(floor, *along, each) for each in zip(y1, y2, BALL * inverse, strict=True)]
     return Frames(images, recording.time[which], (left, right, lower, upper))
 
 

@@ -119,15 +119,13 @@ def read_euroc(path: PathLike, clock: Clock = NANOSECONDS) -> Poses:
 
 
 @checked
-def write_tum(path: PathLike, poses: Poses, clock: Clock = SECONDS) -> None:
+def write_tum(path: PathLike, poses: Poses) -> None:
     """Write poses as `read_tum` reads them, with all their digits.
 
     Parameters
     ----------
     path : path
     poses : Poses
-    clock : Clock
-        Of the file.
 
     See Also
     --------
@@ -143,7 +141,7 @@ def write_tum(path: PathLike, poses: Poses, clock: Clock = SECONDS) -> None:
     #timestamp tx ty tz qx qy qz qw
     """
     pd = load_pandas()
-    cells = (clock.readings(poses.time), *poses.position.T, *poses.orientation.T)
+    cells = (poses.time, *poses.position.T, *poses.orientation.T)
     table = pd.DataFrame(dict(zip(TUM, cells, strict=True)))
     write_whole(Path(path), f"#{table.to_csv(sep=' ', index=False, lineterminator=chr(10))}".encode())
 

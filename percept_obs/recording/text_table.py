@@ -82,11 +82,6 @@ class Clock:
             known[text] = float(reading - zero) * self.tick
         return np.array([known[text] for text in readings])
 
-    def readings(self, seconds: Array) -> list[str]:
-        """Return the readings at some seconds as text with all digits."""
-        zero, tick = Decimal(repr(self.zero)), Decimal(repr(self.tick))
-        return [f"{Decimal(repr(second)) / tick + zero:f}" for second in seconds.tolist()]
-
 
 SECONDS, NANOSECONDS = Clock(), Clock(tick=1e-9)
 

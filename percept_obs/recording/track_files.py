@@ -9,14 +9,12 @@ import numpy as np
 
 from percept_obs.recording import Recording
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.recording.text_table import SECONDS, Clock, PathLike
+from percept_obs.recording.text_table import PathLike
 from percept_obs.validation import checked, load_pandas, write_whole
 
 
 @checked
-def write_tracks(
-    path: PathLike, recordings: Sequence[Recording], camera: PixelCamera | None = None, clock: Clock = SECONDS
-) -> None:
+def write_tracks(path: PathLike, recordings: Sequence[Recording], camera: PixelCamera | None = None) -> None:
     """Write recordings of single points, so that ``Recording.from_csv(path, motion, point="point_id")`` reads them.
 
     Parameters
@@ -26,8 +24,6 @@ def write_tracks(
         With the same outputs and the same measured distances.
     camera : PixelCamera, optional
         Then columns u and v of pixels are written, as its lens shows them; image coordinates when left out.
-    clock : Clock
-        Of the file.
 
     Raises
     ------
@@ -72,7 +68,7 @@ def write_tracks(
     tables = []
     for number, each in enumerate(recordings):
         shown = camera.pixels(each.outputs) if camera else each.outputs
-        columns = {"time": clock.readings(each.time), "point_id": number}
+        columns = {"time": each.time, "point_id": number}
         columns |= dict(zip(("u", "v") if camera else first.names, shown.T, strict=True))
         if known:
             columns["depth"] = np.nan if each.truth is None else each.distance

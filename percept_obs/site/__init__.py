@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import shutil
 import tempfile
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from importlib import metadata, resources
 from itertools import chain
 from pathlib import Path
@@ -56,12 +56,13 @@ SETTINGS: dict[str, Any] = {
     "add_module_names": False,
 }
 
+PROCESSES = 2
+"""Notebooks that run at once, then pages that are written at once."""
+
 
 def build(
     target: Path,
     notebooks: Mapping[str, Mapping[str, Any]],
-    parallel: int = 2,
-    tell: Callable[[str], object] = print,
     exam: bool = False,
     address: str = "",
     python: bool = False,
@@ -75,10 +76,6 @@ def build(
         Folder of the site; pages of an earlier one are replaced.
     notebooks : mapping of str to notebook
         Files as they are read, by their names.
-    parallel : int
-        Number of processes: notebooks that run at once, then pages that are written at once.
-    tell : function of str, optional
-        Called with each message about the progress; `print` when left out.
     exam : bool
         Whether the exam's questions, with their solutions, have a page: for teachers.
     address : str, optional
@@ -106,8 +103,8 @@ def build(
     with tempfile.TemporaryDirectory() as folder:
         source, shown = Path(folder) / "site", Path(folder) / "slides"
         lab = first_lab()
-        _notebooks(source, shown, notebooks, run, parallel, lab, tell)
-        tell("writing the papers' equations")
+        _notebooks(source, shown, notebooks, run, lab)
+        print("writing the papers' equations")
         for path, text in [
             *ledger_pages(run & {*NAMED}),
             *reference(),
@@ -115,13 +112,13 @@ def build(
             ("index.md", front(lab, notebooks)),
         ]:
             _write(source / path, text)
-        tell("writing the pages")
+        print("writing the pages")
         (source / "_static" / CARD).write_bytes(card())
         with resources.as_file(TEXTS / "pictures") as pictures:
             shutil.copytree(pictures, source / "pictures")
         context = {"versions": above_versions(address), "python": lite.PLACES if python else {}}
         settings = {"html_baseurl": address, "html_context": context}
-        _generate(source, target, {"myst_substitutions": names, **settings}, parallel=parallel)
+        _generate(source, target, {"myst_substitutions": names, **settings}, parallel=PROCESSES)
         slides.prepare(shown, (TEXTS / "slides.css").read_text("utf-8"))
         extensions = [*SETTINGS["extensions"], "sphinx_revealjs"]
         _generate(shown, target / "slides", {**slides.SETTINGS, "extensions": extensions}, "revealjs")
@@ -129,9 +126,9 @@ def build(
     if address:
         write_sitemap(target, address)
     if python:
-        tell("building JupyterLite")
+        print("building JupyterLite")
         lite.write_lite(target, notebooks)
-    tell(f"wrote {target / 'index.html'}")
+    print(f"wrote {target / 'index.html'}")
 
 
 def _notebooks(
@@ -139,9 +136,7 @@ def _notebooks(
     shown: Path,
     notebooks: Mapping[str, Mapping[str, Any]],
     run: set[str],
-    parallel: int,
     lab: Mapping[str, Any],
-    tell: Callable[[str], object],
 ) -> None:
     """Run notebooks, and write all and their slides, with the scripts of their labs and of the first page's."""
     import nbformat
@@ -149,8 +144,8 @@ def _notebooks(
     states: dict[bytes, Mapping[str, Any]] = {lab["texts"]: lab}
     wanted = {name: notebook for name, notebook in notebooks.items() if name in run}
     kept = ((name, not_run(notebook)) for name, notebook in notebooks.items() if name not in run)
-    for name, notebook in chain(run_all(wanted, parallel), kept):
-        tell(f"{'ran' if name in run else 'wrote'} {name}")
+    for name, notebook in chain(run_all(wanted, PROCESSES), kept):
+        print(f"{'ran' if name in run else 'wrote'} {name}")
         states |= {state["texts"]: state for state in labs_of(notebook).values()}
         _write(shown / name, nbformat.writes(without_widgets(slides.slides_of(notebook), SCRIPTS)))
         _write(source / "notebooks" / name, nbformat.writes(without_widgets(notebook, SCRIPTS)))

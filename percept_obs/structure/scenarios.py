@@ -134,9 +134,13 @@ def chwa2019_simulation(section: str, chwa_rotation: Sequence[float] = _STILL) -
     return _structure(name, (*image, 0.05), 4.0, number, (tuple(w.tolist()), camera, object_), source)
 
 
+MOVES_AT = 5.0
+"""Seconds after which the object moves; the paper does not state it."""
+
+
 @checked
-def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenario:
-    """Return the scenario of an object that stands still and then moves (Chwa 2019, section IV).
+def chwa2019_semigeneral(set_up: str) -> StructureScenario:
+    """Return the scenario of an object that stands still for 5 s and then moves (Chwa 2019, section IV).
 
     Both stages are one motion, and the choice is that of the second.
 
@@ -145,13 +149,11 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
     set_up : str
         "simulation": the camera keeps its velocity, and the object begins to wander.  "experiment": the values stated
         for IV.A and then those for IV.B, so that the camera changes its velocity when the object moves off.
-    moves_at : float
-        Seconds; the paper does not state it.
 
     Raises
     ------
     ValueError
-        If there is no such set-up, or the time is not positive and finite.
+        If there is no such set-up.
 
     See Also
     --------
@@ -164,20 +166,18 @@ def chwa2019_semigeneral(set_up: str, moves_at: float = 5.0) -> StructureScenari
     >>> motion.known([4.0, 6.0])[:, 6:].tolist()  # the object's velocity
     [[0.0, 0.0, 0.0], [-0.22, -0.23, 0.0]]
     """
-    if not 0 < 2 * moves_at < math.inf:
-        raise ValueError(f"moves_at is {moves_at} s; the object must begin to move at a finite time after 0")
     cases = {"simulation": _CHWA_SIMULATION, "experiment": _CHWA_EXPERIMENT}
     stages = [_stated(set_up, cases)[section] for section in ("IV.A", "IV.B")]
     still, moving = (chwa2019_simulation if set_up == "simulation" else chwa2019_experiment)("IV.A"), stages[1]
-    camera, object_ = (partial(_in_stage, [stage[k] for stage in stages], moves_at) for k in (1, 2))
+    camera, object_ = (partial(_in_stage, [stage[k] for stage in stages]) for k in (1, 2))
     motion = rigid(camera_velocity=camera, point_velocity=object_)
     name, choice = f"Chwa 2019, {set_up} IV", COROLLARIES[moving[0] - 1].choice()
-    return replace(still, name=name, motion=motion, duration=2 * moves_at, choice=choice)
+    return replace(still, name=name, motion=motion, duration=2 * MOVES_AT, choice=choice)
 
 
-def _in_stage(velocities: Sequence[Any], moves_at: float, time: float) -> Any:
-    velocity = velocities[time > moves_at]
-    return velocity(time - moves_at) if callable(velocity) else velocity
+def _in_stage(velocities: Sequence[Any], time: float) -> Any:
+    velocity = velocities[time > MOVES_AT]
+    return velocity(time - MOVES_AT) if callable(velocity) else velocity
 
 
 @checked

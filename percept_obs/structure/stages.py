@@ -41,6 +41,10 @@ class SemigeneralRun:
         return np.stack([velocities[name] for name in _OBJECT], axis=-1)
 
 
+AVERAGED = 0.5
+"""Seconds before the object moves over which estimates are averaged."""
+
+
 @checked
 def semigeneral(
     recording: Recording,
@@ -49,7 +53,6 @@ def semigeneral(
     choice: StructureAndMotion | None = None,
     make: Callable[[CanonicalForm], Observer] = integral_sliding_mode,
     camera: Literal["kept", "given"] = "kept",
-    average: float = 0.5,
     scale: float | None = None,
     **settings: Any,
 ) -> SemigeneralRun:
@@ -63,16 +66,14 @@ def semigeneral(
         From `rigid`.  Known are its angular velocity and the components of the camera's velocity that `choice` knows;
         the rest is not used unless the truth is asked for, or the camera's velocity is given.
     moves_at : float
-        When the object starts to move, in seconds.
+        When the object starts to move, in seconds.  The first stage's estimates are averaged over the half second
+        before it to be handed on.
     choice : StructureAndMotion, optional
         Unknowns of the first stage; those of corollary 1 with v_c1 known when left out.
     make : function of a form
         The observer of both stages.
     camera : "kept" or "given"
         "kept" if the camera keeps the velocity that the first stage found; "given" if `motion` gives it anew.
-    average : float
-        Seconds before `moves_at` over which the first stage's estimates are averaged to be handed on; 0 for the last
-        ones alone.
     scale : float, optional
         The true d_s, if the runs are to be compared with the truth.
     **settings
@@ -115,13 +116,13 @@ def semigeneral(
         raise ValueError(f"the object moves at {moves_at} s; each stage needs two samples: {begin:.4g} to {end:.4g} s")
     first = seen_as(recording.between(-np.inf, moves_at), choice, motion, scale)
     static = track(first, make(choice.form), **settings)
-    last = static.estimate[static.time >= moves_at - average - slack_of(static.time), -len(choice.unknown) :]
+    last = static.estimate[static.time >= moves_at - AVERAGED - slack_of(static.time), -len(choice.unknown) :]
     usable = last[np.isfinite(last).all(axis=1)]
     found = {n: float(v) for n, v in choice.quantities(usable.mean(axis=0)).items()} if len(usable) else {}
     if not found.get("d_s", np.nan) > 0:
         raise ValueError(
-            f"in the last {average} s before {moves_at} s there is no estimate of a positive d_s ({static.verdict()}); "
-            "let the first stage last longer, or average less"
+            f"in the last {AVERAGED} s before {moves_at} s there is no estimate of a positive d_s "
+            f"({static.verdict()}); let the first stage last longer"
         )
     second = StructureAndMotion(_OBJECT, earlier=choice.unknown, scale=found["d_s"])
     believed = second.known_motion(_with_velocities(motion, found) if camera == "kept" else motion)

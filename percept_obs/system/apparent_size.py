@@ -64,7 +64,8 @@ def sized(surface: ImagingSurface, radius: float | None = None) -> ImagingSurfac
     """Return a surface that also sees how large a sphere around the point is: s = r/Z on the pinhole.
 
     Its rate is s' = s eta'/eta, from which r is gone; its row of w does not vanish at the focus of expansion (Spica,
-    Robuffo Giordano and Chaumette 2014).
+    Robuffo Giordano and Chaumette 2014).  The sphere's centre over its radius, p = (y1, y2, 1)/s, is seen as a whole,
+    and p' = A p + b/r is linear in the constant 1/r: any translation shows it, in any direction.
 
     Parameters
     ----------

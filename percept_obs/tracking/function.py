@@ -12,7 +12,6 @@ import numpy as np
 from percept_obs.compile import Array, Language, vectorised
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import step
-from percept_obs.observers.base import About
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
 from percept_obs.tracking.following import DoesNotFit, Start, follow, named_start, require_match
@@ -45,8 +44,6 @@ class FunctionObserver:
         Returns estimates of the coordinates, shape (n,).
     covariance : function of the state, optional
         Returns the covariance of the estimate that it claims, shape (n, n).
-    about : About, optional
-        Its title, source, needs and claim.
 
     Raises
     ------
@@ -81,7 +78,6 @@ class FunctionObserver:
     step: Callable[[Array, Array | None, float, Mapping[str, float]], Array]
     estimate: Callable[[Array], Array]
     covariance: Callable[[Array], Array] | None = None
-    about: About | None = None
     gains: ClassVar[tuple[()]] = ()
     unobservable: ClassVar[tuple[()]] = ()
     equations: ClassVar[Equations] = Equations((), ())

@@ -686,7 +686,6 @@ def test_saved_pictures_keep_their_text(runs, tmp_path, ending):
     [
         (lambda run: figures.signals(run("plane").recording), "expected a Run"),
         (lambda run: figures.signals([run("plane"), run("plane")]), "expected a Run"),
-        (lambda run: figures.signals(run("plane"), tolerance=0), "tolerance is 0"),
         (lambda run: figures.image_plane(run("three outputs")), "has 3 image coordinates"),
         (lambda run: figures.image_plane(run("diverged, without truth").recording, -1), "threshold is -1"),
         (lambda run: figures.image_plane("run"), "expected a Run or a Recording"),

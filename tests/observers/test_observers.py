@@ -44,6 +44,7 @@ from percept_obs.observers import (
     spica,
 )
 from percept_obs.observers.parts import first_seen, hats, innovation, output_injection, sigma2
+from percept_obs.system.forms import partition
 from percept_obs.system.motion import TIME
 from percept_obs.system.surfaces.base import X, Y, Z
 
@@ -306,6 +307,24 @@ def test_spica_is_de_lucas_with_critical_damping():
     damping = 2 * sp.sqrt(Lam) * sp.sqrt(sum(entry**2 for entry in BOTH.w))
     difference = sp.Matrix(spica(BOTH).equations.flow) - sp.Matrix(de_luca(BOTH).equations.flow).subs(H, damping)
     assert difference.expand() == sp.zeros(3, 1)
+
+
+def test_de_lucas_depth_error_decays_where_w_is_not_zero():
+    """With constant w and without g, the slowest pole is 0 at w = 0 and the faster, the longer w is."""
+    w, (_, _, y3) = sp.symbols("w1:3", real=True), BOTH.coordinates
+    observer = de_luca(partition(BOTH.coordinates, sp.Matrix([*(k * y3 for k in w), 0]), ["y1", "y2"], w))
+    J = sp.lambdify([w], observer.jacobian().subs(observer.gain_values))
+    slowest = [np.linalg.eigvals(J([0.3 * k, 0.4 * k])).real.max() for k in range(3)]
+    assert slowest[2] < slowest[1] < slowest[0] == 0
+
+
+def test_a_camera_that_turns_only_shows_the_focal_length_and_no_depth():
+    """De Luca et al. 2008: w is 0, and the rate of a pixel f y1 holds f."""
+    f, form = sp.Symbol("f"), PerspectiveSystem(rigid(), SURFACES["pinhole"]).measure("y1", "y2")
+    still = dict.fromkeys(form.parameters[3:], 0)
+    assert form.w.subs(still).is_zero_matrix
+    pixels = (f * form.rate[:2, :].subs(still)).subs({y: y / f for y in form.x1}, simultaneous=True).expand()
+    assert all(rate.has(f) and not rate.has(form.x2[0]) for rate in pixels)
 
 
 def test_what_an_observer_cannot_do_is_refused():

@@ -72,7 +72,7 @@ def others():
     yield from MOTIONS.items()
     yield "misbelieved", misbelieved(MOTIONS["motion of functions"], v_c1=0.1)
     yield "seen on a sphere", po.seen_on(recorded(), po.sphere())
-    scene = chwa2019_semigeneral("simulation", 1)
+    scene = chwa2019_semigeneral("simulation")
     seen = po.record(scene, 2, po.Camera(0.01))
     yield "linear view", linear_view(seen)
     yield "semigeneral", po.semigeneral(seen, scene.motion, moves_at=1, step=0.01)

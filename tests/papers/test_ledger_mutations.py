@@ -4,10 +4,10 @@ from collections import Counter
 
 import pytest
 import sympy as sp
-from ledger_mutations import say_the_same
+from ledger_mutations import say_the_same, slips
 
 from percept_obs.checking.places import at, put
-from percept_obs.checking.slips import MISTAKES, siblings_in, slips, slips_in, symbols_in
+from percept_obs.checking.slips import MISTAKES, siblings_in, slips_in, symbols_in
 from percept_obs.papers import base
 from percept_obs.papers.base import dot, equal
 

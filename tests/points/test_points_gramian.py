@@ -129,5 +129,3 @@ def test_the_bound_needs_what_the_proof_needs():
         decay_bound(recording(1), luenberger(recording(1).view, riccati()), 4)
     with pytest.raises(ValueError, match=r"rests on \(15\)"):
         decay_bound(recording(1), luenberger(recording(1).view, lambda t: 1 + t), 4)
-    with pytest.raises(ValueError, match="2 points, the recording 1"):
-        gramian(recording(1), 4, moving_body(2).form)

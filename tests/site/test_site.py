@@ -36,7 +36,7 @@ from percept_obs.site.pages import ledger_addresses, reference, slug
 from percept_obs.site.slides import NEXT, slides_of
 
 NOTEBOOK = "00_start.ipynb"
-PAPER = "DE_LUCA2008"
+PAPER = "INABA2005"
 WITH_RESULTS = {Path(NOTEBOOK).stem + ".html", slug(PAPER)}
 ADDRESS = "https://example.org/course"
 
@@ -66,7 +66,7 @@ def pages(tmp_path_factory):
         warnings.simplefilter("ignore")  # the generator's own
         if run:  # tests of its own build it
             patch.setattr(site.lite, "write_lite", _write_no_lite)
-        site.build(target, copies, tell=lambda text: None, exam=True, address=ADDRESS, python=True, run=run)
+        site.build(target, copies, exam=True, address=ADDRESS, python=True, run=run)
     return target
 
 

@@ -43,6 +43,7 @@ def test_a_wrong_depth_slows_or_overshoots():
         servo(starts(8), *depth, noise=0.0) for depth in (["true"], ["constant", 0.5], ["constant", 4.0])
     )
     assert np.median(near.arrived_at()) > 1.5 * np.median(true.arrived_at())
+    assert np.isfinite([near.arrived_at(), far.arrived_at()]).all()
     assert np.median(far.overshoot) > 0.005 > true.overshoot.max()
 
 
@@ -88,6 +89,7 @@ def test_of_many_starts():
     assert abs(table.loc["observed", "time"] - table.loc["true", "time"]) < 0.1 < table.loc["constant", "time"] - 3.4
     assert (table["arrived_low"] < table["arrived"]).all()
     assert observer_lab(run(FILTER).recording())
+    assert comparison({"constant": "constant"}, starts(40), ratio=1 / 4)["arrived"].iloc[0] < 0.5
 
 
 test_what_makes_no_sense_is_refused = refuses(

@@ -2,7 +2,19 @@
 
 import sympy as sp
 
+from percept_obs.checking.slips import Moves, siblings_in, slips_in
 from percept_obs.papers import base
+
+PRINTS = Moves((-sp.S.One, sp.Integer(2)))
+"""Slips in a printed formula."""
+
+
+def slips(printed, pool):
+    """Yield the formulas with one sign, factor, exponent or symbol changed; those of the pool may be mistaken."""
+    siblings = siblings_in(pool)
+    for k, formula in enumerate(printed):
+        for slip in slips_in(formula, siblings, PRINTS):
+            yield (*printed[:k], slip.formula, *printed[k + 1 :])
 
 
 def say_the_same(one: tuple[sp.Basic, ...], other: tuple[sp.Basic, ...]) -> bool:

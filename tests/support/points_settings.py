@@ -63,11 +63,6 @@ def run_of(settings):
     return _lab().runs(settings)
 
 
-def recording_of(settings):
-    """Python's recording of settings."""
-    return _lab().recorded(settings)
-
-
 def random_settings(seed):
     """Settings that make sense, drawn over every control of the lab."""
     rng = np.random.default_rng(seed)

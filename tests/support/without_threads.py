@@ -59,7 +59,7 @@ def work(folder):
     run = po.track(recording, po.ibo(form))
     assert str(run.verdict()).startswith("converged")
     figures.runs_over_time(run).figure.savefig(folder / "run.svg")
-    assert papers.judge([papers.DE_LUCA2008])
+    assert papers.judge(papers.find(["(10)"], paper="Ma"))
     assert po.check("a13 - a33 y1", "a13 - y1 a33")
     for make in (labs.observer_lab, labs.points_lab, labs.structure_lab):
         lab = make(duration=2.0)

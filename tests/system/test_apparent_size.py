@@ -50,6 +50,14 @@ def test_its_row_of_w_stays_at_the_focus_of_expansion():
     assert not FORM.rate.has(*SIZED.radii)
 
 
+def test_the_centre_over_the_radius_is_seen_and_moves_linearly_in_one_over_the_radius():
+    """Spica, Robuffo Giordano and Chaumette 2014: p' = A p + b/r, so that any translation shows r."""
+    centre, motion = sp.Matrix([y1, y2, 1]) / s, affine()
+    moved = centre.jacobian(SYSTEM.coordinates) * SYSTEM.rate
+    missed = moved - motion.A * centre - motion.b * SIZED.inverse_distance / s
+    assert missed.applyfunc(sp.cancel).is_zero_matrix
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("make", [make for make in OBSERVERS if not make.refusal(FORM)], ids=lambda make: make.key)
 def test_every_observer_of_a_canonical_form_runs_on_it_and_stays_at_the_truth(make):

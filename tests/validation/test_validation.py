@@ -47,7 +47,6 @@ from percept_obs.validation import TooMuchWork, WrongKind, checked, expression
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
 SHORT = record(scenarios.ma2005_eq35(), 1, Camera(0.1))
-FASTEST = Scenario("s", affine(1e9 * np.diag([-1, 0, 0]), [0, 0, 0]), (1, 1, 1), 1, pinhole())
 STILL = affine(np.zeros((3, 3)), np.zeros(3))
 
 
@@ -148,12 +147,12 @@ test_too_much_work_is_refused_before_it_begins = refuses(
     (lambda: record(moving_body(9), 1e5), "samples"),
     (lambda: track(SHORT, ibo(BOTH), step=1e-9), "1e\\+09 steps.*take longer steps"),
     (lambda: track(SHORT, ibo(BOTH), step=2e-7), r"3\.5e\+07 numbers, from 5e\+06 steps"),
+    (lambda: steered(replace(scenarios.ma2005_eq35(), duration=1e9)), "numbers of a velocity.*take a shorter"),
     (lambda: lie_derivatives(BOTH, orders=6), r"2\.46e\+04 terms of Lie derivatives"),
     (lambda: lao(BOTH, iterates=2000), "2e\\+03 iterates.*take fewer"),
     (lambda: moving_body(2000), "points of a body.*take fewer points"),
     (lambda: independent_points(rigid(), 10**6), "points of a body"),
     (lambda: linear(states=2000), "entries of A.*fewer states"),
-    (lambda: steered(scenarios.ma2005_eq35(), step=1e-9), r"9\.6e\+11 numbers of a velocity.*take a longer step"),
     (lambda: scenarios.ma2005_eq35().points(range(10**9)), r"1e\+09 entries of a range"),
     (lambda: ensemble(scenarios.ma2005_eq35(), ibo(BOTH), seeds=range(10**20)), r"1e\+20 entries of a range"),
     (

@@ -42,12 +42,12 @@ def refuse_longer(motion: Motion, duration: float) -> None:
         )
 
 
-def table_for_the_page(motion: Motion, begun: float = 0.0) -> Settings:
-    """A sampled motion in numbers, with times from when it began."""
+def table_for_the_page(motion: Motion) -> Settings:
+    """A sampled motion in numbers."""
     signal = motion.signal
     assert signal is not None
     assert not callable(signal.samples)
-    times = [0.0] if signal.times is None else (signal.times - begun).tolist()
+    times = [0.0] if signal.times is None else signal.times.tolist()
     return {"times": times, "rows": signal.samples.tolist()}
 
 
