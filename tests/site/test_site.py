@@ -208,7 +208,7 @@ def test_a_word_is_found_from_a_disk(pages, browser):
 
 
 @pytest.mark.slow
-def test_the_reference_shows_what_is_taken_and_raised_and_links_to_what_is_to_be_seen_also(pages):
+def test_the_reference_shows_what_is_taken_and_raised_and_links_to_the_like(pages):
     for path in (pages / "reference").glob("percept-obs*.html"):
         text = path.read_text(encoding="utf-8")
         assert not re.search(r'<ol class="\w*alpha', text), f"an initial such as R. begins a list in {path}"

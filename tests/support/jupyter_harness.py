@@ -269,7 +269,7 @@ class Server:
 def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
     """JupyterLab on a folder, with everything else that it writes kept in an empty folder `home`."""
     if importlib.util.find_spec("jupyterlab") is None:
-        from conftest import missing  # only here, for notebooks' kernels import this module, too
+        from needs import missing  # only here, for notebooks' kernels import this module, too
 
         missing("jupyterlab", 'JupyterLab is missing; get it with: python -m pip install "percept-obs[course]".')
     for name, text in SETTINGS.items():
