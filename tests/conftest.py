@@ -53,7 +53,6 @@ def pytest_collection_modifyitems(items):
 def pytest_collection_finish():
     """Modules, tests and expressions stay to the end, so they are not looked through for garbage."""
     gc.freeze()
-    gc.set_threshold(20_000)
     gc.enable()
 
 

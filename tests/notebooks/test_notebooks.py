@@ -27,10 +27,6 @@ def run_alone(program, folder):
     execute(new_notebook(cells=[new_code_cell(program)]), folder)
 
 
-def test_there_are_notebooks():
-    assert {"00_start.ipynb", "01_perspective_dynamics.ipynb"} <= set(NAMES)
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_nothing_of_a_run_is_stored(name):
     notebook = read(name)
@@ -84,11 +80,8 @@ def test_it_runs_with_the_whole_recording_too(name, tmp_path):
     assert silent_pictures(one.notebook, one.widgets) == []
 
 
-ASKING = [name for name in NAMES if asked(read(name))]
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ASKING)
+@pytest.mark.parametrize("name", [name for name in NAMES if asked(read(name))])
 def test_a_missing_module_is_one_sentence_and_no_other_cell_runs(name, tmp_path):
     notebook = nbformat.read(NOTEBOOKS / name, as_version=4)
     for cell in notebook.cells:

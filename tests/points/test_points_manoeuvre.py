@@ -19,9 +19,8 @@ def test_path_and_spin_are_those_that_are_documented():
     described = np.transpose([1.5 * np.sin(t), 1.2 * np.cos(0.7 * t), 2.5 + 0.5 * np.sin(0.5 * t)])
     np.testing.assert_allclose(path_at(t), described, atol=1e-12)
     turns = [-0.2 * np.sin(0.3 * t), -0.3 * np.cos(0.4 * t), np.full(7, -0.5)]
-    spins = [0.5 * np.sin(t), 0.4 * np.cos(t), np.full(7, 0.3)]
-    for entries, numbers in ((TURNING, turns), (SPIN, spins)):
-        np.testing.assert_allclose([[float(e.subs(TIME, s)) for s in t] for e in entries], numbers, atol=1e-12)
+    found = [[float(e.subs(TIME, s)) for s in t] for e in (*TURNING, *SPIN)]
+    np.testing.assert_allclose(found, [*turns, 0.5 * np.sin(t), 0.4 * np.cos(t), np.full(7, 0.3)], atol=1e-12)
 
 
 @pytest.mark.parametrize("turning", [0.0, 0.4, 1.0])

@@ -1,7 +1,7 @@
 """On real tracks, one setting chosen on half of them brings the others' distance within the stated errors."""
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from itertools import product
 
 import numpy as np
@@ -19,17 +19,14 @@ FORM = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
 
 @cache
 def ibo_settings():
-    gains = product((3, 5, 8, 10), (50, 100, 200, 400))
-    return [ibo(FORM, gain=gain, lyapunov=-feedback / gain**2) for gain, feedback in gains]
+    return [ibo(FORM, gain=k, lyapunov=-p / k**2) for k, p in product((3, 5, 8, 10), (50, 100, 200, 400))]
 
 
 @cache
 def ekf_settings():
-    variances = {"measured_variance": 1e-4, "hidden_variance": 1}
-    return [
-        ekf(FORM, noise_variance=(pixels / 484.5) ** 2, process_noise=process, **variances)
-        for pixels, process in product((2, 4, 8), (0, 1e-4, 1e-3))
-    ]
+    make = partial(ekf, FORM, measured_variance=1e-4, hidden_variance=1)
+    noise = product((2, 4, 8), (0, 1e-4, 1e-3))
+    return [make(noise_variance=(pixels / 484.5) ** 2, process_noise=process) for pixels, process in noise]
 
 
 @cache
