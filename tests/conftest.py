@@ -7,7 +7,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read by numpy; threads onl
 import gc
 import math
 import shutil
+import sys
 from collections import Counter
+from functools import cache, partial
 
 import hypothesis
 import platformdirs
@@ -15,7 +17,8 @@ import pytest
 from needs import found_chromium, missing
 from sample_sizes import sampled
 
-gc.set_threshold(20_000)  # else what the tests' modules make is looked through again and again, a fifth of loading them
+sys.modules.setdefault("rfc3987_syntax", None)  # jsonschema does without its grammar, which takes 5 s of each process
+gc.disable()  # until all is collected, or what the tests' modules make is looked through again and again
 os.environ["MPLBACKEND"] = "Agg"
 # Kernels and servers with a home of their own take loops in machine code from here too.
 os.environ.setdefault("NUMBA_CACHE_DIR", str(platformdirs.user_cache_path("percept_obs")))
@@ -36,17 +39,21 @@ def pytest_itemcollected(item):
 
 
 def pytest_collection_modifyitems(items):
-    """Files that take long first, or one would be late: those with a browser, the notebooks, many slow tests."""
+    """Skip by day what runs at night.  Files that take long come first: a browser, the notebooks, many slow tests."""
     tests = Counter(item.path for item in items)
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     browser = {item.path for item in items if item.get_closest_marker("browser")}
     rank = {path: (path not in browser, path.stem != "test_notebooks", -slow[path], -tests[path]) for path in tests}
+    for item in items:
+        if item.get_closest_marker("night") and not os.environ.get("ALL_SAMPLES"):
+            item.add_marker(pytest.mark.skip(reason="runs at night: ALL_SAMPLES=1"))
     items.sort(key=lambda item: rank[item.path])
 
 
 def pytest_collection_finish():
     """Modules, tests and expressions stay to the end, so they are not looked through for garbage."""
     gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="session")
@@ -63,6 +70,15 @@ def node():
 def xr():
     """The module xarray, which takes a while to load."""
     return pytest.importorskip("xarray")
+
+
+@pytest.fixture(scope="session")
+def ran(tmp_path_factory):
+    """Takes the run of a notebook that any test began, in this process or in another one, or begins it."""
+    from notebook_runs import shared_run
+
+    base = tmp_path_factory.getbasetemp()
+    return cache(partial(shared_run, base.parent if "PYTEST_XDIST_WORKER" in os.environ else base))
 
 
 @pytest.fixture(scope="module")

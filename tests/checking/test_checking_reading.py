@@ -260,7 +260,7 @@ def test_whatever_is_typed_is_read_or_refused():
 
 
 @pytest.mark.slow
-def test_a_parser_that_was_kept_is_the_one_that_was_made_and_one_that_was_cut_off_is_made_anew(tmp_path, monkeypatch):
+def test_a_kept_parser_is_the_one_made_and_one_cut_off_is_made_anew(tmp_path, monkeypatch):
     monkeypatch.setattr(spelling, "user_cache_path", lambda name: tmp_path / name)
     make = spelling.parser.__wrapped__
     made = make()

@@ -5,37 +5,26 @@ import json
 import re
 from itertools import pairwise
 
+import nbformat
 import numpy as np
 import pytest
-from jupyter_harness import (
-    execute,
-    silent_pictures,
-)
-from mistakes import MISTAKES
-from notebook_exercises import FAILING, code, read, trials
-from packages import modules, outside, required
+from jupyter_harness import execute, silent_pictures
+from nbclient.exceptions import CellExecutionError
+from nbformat.v4 import new_code_cell, new_notebook
+from notebook_exercises import FAILING, asked, code, read
+from notebook_runs import run
 from places import NOTEBOOKS
-from sample_sizes import sampled
 from utias_cut import whole
 
 from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.recording import scenarios
-from percept_obs.recording.utias import UTIAS_CUT
 
 NAMES = sorted(path.name for path in NOTEBOOKS.glob("*.ipynb"))
-OPENED_BY = ("percept-obs", "jupyterlab", "numba")
-"""What every notebook may use; what else it needs, its first cell asks for."""
 
 
 def run_alone(program, folder):
     """Run a notebook of one cell."""
-    from nbformat.v4 import new_code_cell, new_notebook
-
     execute(new_notebook(cells=[new_code_cell(program)]), folder)
-
-
-def test_there_are_notebooks():
-    assert {"00_start.ipynb", "01_perspective_dynamics.ipynb"} <= set(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -75,49 +64,25 @@ def test_links_lead_to_notebooks(name):
     assert set(re.findall(r"\]\(([^):]*\.ipynb)\)", text)) <= set(NAMES)
 
 
-def asked(notebook):
-    """The modules for which the first cell of code asks."""
-    calls = [node for node in ast.walk(ast.parse(code(notebook)[0])) if isinstance(node, ast.Call)]
-    return [each.value for call in calls if getattr(call.func, "id", "") == "needs" for each in call.args]
-
-
-def run(name, folder):
-    """Run a notebook with nothing but what its first cell asks for, all of which the extra "course" brings."""
-    import nbformat
-
-    notebook = nbformat.read(NOTEBOOKS / name, as_version=4)
-    brought = [*OPENED_BY, *(package for module in asked(notebook) for package in modules()[module])]
-    assert required(*brought).keys() <= required("percept-obs[course]").keys()
-    mistakes = trials(notebook, MISTAKES[name.removesuffix(".ipynb")])
-    widgets = execute(notebook, folder, mistakes, outside(*brought))
-    assert silent_pictures(notebook, widgets) == []
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_it_runs_with_what_it_asks_for_and_every_control_moves(name, tmp_path, monkeypatch):
-    monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(UTIAS_CUT))
-    run(name, tmp_path)
+def test_it_runs_with_what_it_asks_for_and_every_control_moves(name, ran):
+    assert ran(name).fault == ""
+    assert silent_pictures(ran(name).notebook, ran(name).widgets) == []
 
 
-RECORDED = [name for name in NAMES if "load_utias" in "".join(code(read(name)))]
+@pytest.mark.night
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in NAMES if "load_utias" in "".join(code(read(name)))])
+def test_it_runs_with_the_whole_recording_too(name, tmp_path):
+    one = run(name, tmp_path, whole())
+    assert one.fault == ""
+    assert silent_pictures(one.notebook, one.widgets) == []
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", sampled(RECORDED[-1:], RECORDED))
-def test_it_runs_with_the_whole_recording_too(name, tmp_path, monkeypatch):
-    monkeypatch.setenv("PERCEPT_OBS_UTIAS", str(whole()))
-    run(name, tmp_path)
-
-
-ASKING = [name for name in NAMES if asked(read(name))]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", sampled(ASKING[-1:], ASKING))
+@pytest.mark.parametrize("name", [name for name in NAMES if asked(read(name))])
 def test_a_missing_module_is_one_sentence_and_no_other_cell_runs(name, tmp_path):
-    import nbformat
-
     notebook = nbformat.read(NOTEBOOKS / name, as_version=4)
     for cell in notebook.cells:
         cell.metadata.tags = ["raises-exception"]  # and yet the next ones are sent
@@ -131,8 +96,6 @@ def test_a_missing_module_is_one_sentence_and_no_other_cell_runs(name, tmp_path)
 
 @pytest.mark.slow
 def test_an_error_in_a_callback_fails_the_test(tmp_path):
-    from nbclient.exceptions import CellExecutionError
-
     with pytest.raises(CellExecutionError) as failure:
         run_alone(FAILING, tmp_path)
     for message in (
@@ -146,8 +109,6 @@ def test_an_error_in_a_callback_fails_the_test(tmp_path):
 
 @pytest.mark.slow
 def test_a_warning_of_a_cell_fails_the_test(tmp_path):
-    from nbclient.exceptions import CellExecutionError
-
     with pytest.raises(CellExecutionError, match="UserWarning"):
         run_alone("import warnings; warnings.warn('a warning')", tmp_path)
 

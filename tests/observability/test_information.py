@@ -39,7 +39,7 @@ def test_of_too_many_samples_every_so_many_are_taken(monkeypatch):
         np.testing.assert_allclose(one, other, rtol=1e-9)
 
 
-def test_a_deviation_is_that_of_least_squares_and_infinite_where_unknowns_stand_for_each_other():
+def test_a_deviation_is_that_of_least_squares_infinite_where_two_unknowns_act_alike():
     J = np.random.default_rng(0).normal(size=(30, 3))
     expected = np.sqrt(np.diag(np.linalg.inv(J.T @ J)))
     np.testing.assert_allclose([_deviation(J, k) for k in range(3)], expected, rtol=1e-9)

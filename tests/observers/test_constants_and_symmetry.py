@@ -16,7 +16,7 @@ from percept_obs.observers.parts import sigma2
 
 
 @pytest.mark.slow
-def test_with_one_output_the_observer_of_constants_is_as_fast_as_the_filter_and_mas_is_not():
+def test_of_one_output_constants_are_found_as_fast_as_by_the_filter():
     rows = [row for row, _ in one_output(2, 6, (ONE,), {"uniform 0.01": Uniform(0.01)})]
     median = {(row[2], row[3]): row[4] for row in rows}
     for start in (0.0, 1.0):
@@ -25,7 +25,7 @@ def test_with_one_output_the_observer_of_constants_is_as_fast_as_the_filter_and_
 
 
 @pytest.mark.slow
-def test_from_wrong_ranges_the_equivariant_filter_settles_and_claims_too_much_where_it_began_too_near():
+def test_the_equivariant_filter_claims_too_much_where_it_began_too_near():
     rows = {(factor, key): (share, nees) for factor, key, share, _, nees, _ in basin(5, (0.1, 10.0))}
     assert all(share == 1 for share, _ in rows.values())
     assert rows[0.1, "equivariant_filter"][1] > 3 * rows[0.1, "extended_kalman"][1]

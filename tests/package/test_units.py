@@ -7,7 +7,6 @@ from functools import cache, partial
 import numpy as np
 import pytest
 import sympy as sp
-from sample_sizes import sampled
 
 from percept_obs import (
     Camera,
@@ -93,7 +92,8 @@ def run_of(make, varying, form, unit):
     found |= {"distance": run.distance / unit, "words": [run.verdict(), run.trust().kind, str(len(run.resets))]}
     if run.observer.covariance is not None:
         found |= {"covariance": run.covariance * np.outer(scale, scale), "nees": run.nees(), "nis": run.nis}
-        found["likelihood"] = run.log_likelihood
+        # of the first sample R - P has lost all digits but three, where P begins 1e13 times as large as R
+        found["likelihood"] = run.log_likelihood[1:]
     return found
 
 
@@ -194,7 +194,7 @@ def largest(ask):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         metres = ask(1.0)
-        return max(deviation(metres, ask(unit)) for unit in sampled([UNITS["feet"]], UNITS.values()))
+        return max(deviation(metres, ask(unit)) for unit in UNITS.values())
 
 
 def forms_of(make):

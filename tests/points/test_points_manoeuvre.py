@@ -14,6 +14,15 @@ def path_at(time):
     return np.array([[float(entry.subs(TIME, t)) for entry in PATH] for t in time])
 
 
+def test_path_and_spin_are_those_that_are_documented():
+    t = np.linspace(0.0, 6.0, 7)
+    described = np.transpose([1.5 * np.sin(t), 1.2 * np.cos(0.7 * t), 2.5 + 0.5 * np.sin(0.5 * t)])
+    np.testing.assert_allclose(path_at(t), described, atol=1e-12)
+    turns = [-0.2 * np.sin(0.3 * t), -0.3 * np.cos(0.4 * t), np.full(7, -0.5)]
+    found = [[float(e.subs(TIME, s)) for s in t] for e in (*TURNING, *SPIN)]
+    np.testing.assert_allclose(found, [*turns, 0.5 * np.sin(t), 0.4 * np.cos(t), np.full(7, 0.3)], atol=1e-12)
+
+
 @pytest.mark.parametrize("turning", [0.0, 0.4, 1.0])
 def test_a_point_that_begins_on_the_path_stays_on_it_however_the_camera_turns(turning):
     camera_turns, camera_moves, body_turns = Manoeuvre(turning=turning).velocities

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 from scipy.linalg import expm
-from test_utias import EKF_SETTINGS
+from test_utias import ekf_settings
 
 from percept_obs import FirstSight, luenberger, track
 from percept_obs.points import riccati
@@ -96,7 +96,7 @@ def test_beside_one_filter_a_landmark():
     def one(recording, observer):
         return track(recording, observer, start, language="numba")
 
-    best = best_setting(chosen_on, EKF_SETTINGS, one, (2.0, 3.0))
+    best = best_setting(chosen_on, ekf_settings(), one, (2.0, 3.0))
     filters = [one(recording, best) for recording in reported_on]
     run = chosen(np.inf)
     for after in (2, 3):

@@ -9,7 +9,6 @@ import pytest
 from packages import required
 from packaging.utils import canonicalize_name
 from places import NOTEBOOKS, ROOT, SUPPORT
-from sample_sizes import sampled
 from without_threads import IN_LITE, PLATFORM
 
 from percept_obs.exercises.models import notebooks
@@ -42,8 +41,11 @@ FROM_PYPI = {"ipython-pygments-lexers", "psygnal"}
 """Packages that a reader's browser fetches from PyPI; psygnal has, besides wheels for machines, one for any."""
 
 
+FIRST, *FURTHER = sorted(notebooks())
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("extra", sampled([[]], [[], ["data"]]), ids=str)
+@pytest.mark.parametrize("extra", [[], ["data"]], ids=str)
 def test_a_course_runs_without_threads_processes_and_other_extras(tmp_path, extra):
     command = [sys.executable, SUPPORT / "without_threads.py", tmp_path, *extra]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -67,7 +69,7 @@ def test_every_package_that_is_required_is_pure_or_built_for_the_browser():
         assert version in found[name], f"{name} {version} is what Pyodide has; {found[name]} is asked for"
 
 
-def test_every_package_is_pyodide_s_or_stands_beside_the_notebooks_or_comes_from_pypi():
+def test_every_package_is_pyodide_s_or_beside_the_notebooks_or_on_pypi():
     found = set(required("percept-obs[data]", *IN_LITE, "comm", **PLATFORM)) - {"percept-obs"}
     beside = {canonicalize_name(name) for name in BESIDE}
     assert not beside & IN_PYODIDE
@@ -75,8 +77,8 @@ def test_every_package_is_pyodide_s_or_stands_beside_the_notebooks_or_comes_from
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("what", ["modules", *sampled(["00_start.ipynb"], sorted(notebooks()))])
-def test_modules_import_and_notebooks_run_without_threads_processes_sockets_and_numba(what, tmp_path):
+@pytest.mark.parametrize("what", ["modules", FIRST, *(pytest.param(n, marks=pytest.mark.night) for n in FURTHER)])
+def test_modules_and_notebooks_do_without_threads_processes_sockets_and_numba(what, tmp_path):
     command = [sys.executable, SUPPORT / "without_threads.py", what if what == "modules" else NOTEBOOKS / what]
     before = children_computed()
     answer = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)

@@ -72,18 +72,8 @@ def test_it_is_small(built):
 def test_a_package_that_is_packed_again_can_be_installed(tmp_path):
     lite.pack("lark", tmp_path)
     (wheel,) = tmp_path.iterdir()
-    command = [
-        sys.executable,
-        "-m",
-        "pip",
-        "install",
-        "--quiet",
-        "--no-deps",
-        "--no-index",
-        "--target",
-        tmp_path / "new",
-    ]
-    subprocess.run([*command, wheel], check=True)
+    install = ["pip", "install", "--quiet", "--no-deps", "--no-index", "--target"]
+    subprocess.run([sys.executable, "-m", *install, tmp_path / "new", wheel], check=True)
     assert (tmp_path / "new" / "lark" / "grammars" / "python.lark").exists()
 
 

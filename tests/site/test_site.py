@@ -18,7 +18,6 @@ from lab_alone import DRAWN
 from lab_settings import FRONT
 from needs import missing
 from places import NOTEBOOKS, SUPPORT
-from sample_sizes import sampled
 from widths import WIDTHS, assert_fits
 
 import percept_obs
@@ -31,13 +30,11 @@ from percept_obs.papers import NAMED
 from percept_obs.site.extension import _let_keys_scroll, mathml
 from percept_obs.site.front_ends import TRIED
 from percept_obs.site.named import named
-from percept_obs.site.notebooks import NOT_RUN, drawing
-from percept_obs.site.pages import ledger_addresses, reference, slug
+from percept_obs.site.notebooks import NOT_RUN, drawing, not_run
+from percept_obs.site.pages import ledger_addresses, reference
 from percept_obs.site.slides import NEXT, slides_of
 
 NOTEBOOK = "00_start.ipynb"
-PAPER = "INABA2005"
-WITH_RESULTS = {Path(NOTEBOOK).stem + ".html", slug(PAPER)}
 ADDRESS = "https://example.org/course"
 
 
@@ -56,17 +53,26 @@ class Links(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory):
-    """The whole site, of which one notebook is run and one paper judged; with ALL_SAMPLES all are."""
+def pages(tmp_path_factory, ran):
+    """The whole site: the site itself runs the first notebook, and takes the others from the tests of notebooks."""
     target = tmp_path_factory.mktemp("site")
     copies = {name: COPIES["teachers"](notebook) for name, notebook in notebooks().items()}
     _add_a_second_lab(copies[NOTEBOOK])
-    run = sampled({NOTEBOOK, PAPER}, None)
+    run_all = site.run_all
+
+    def taken(wanted, parallel):
+        yield from run_all({NOTEBOOK: wanted.pop(NOTEBOOK)}, 1)
+        for name in reversed(wanted):  # for their own tests begin with the first
+            ran(name)
+        for name in wanted:
+            assert ran(name).fault == ""
+            yield name, ran(name).notebook
+
     with warnings.catch_warnings(), pytest.MonkeyPatch.context() as patch:
         warnings.simplefilter("ignore")  # the generator's own
-        if run:  # tests of its own build it
-            patch.setattr(site.lite, "write_lite", _write_no_lite)
-        site.build(target, copies, exam=True, address=ADDRESS, python=True, run=run)
+        patch.setattr(site, "run_all", taken)
+        patch.setattr(site.lite, "write_lite", _write_no_lite)  # tests of its own build it
+        site.build(target, copies, exam=True, address=ADDRESS, python=True)
     return target
 
 
@@ -89,15 +95,19 @@ def _add_a_second_lab(notebook):
 
 
 def kind(page):
-    """What a page, a path below the site, is like: each text is a kind, and so is what has results."""
+    """What a page, a path below the site, is like: each text and each notebook is a kind of its own."""
     folder, *rest = page.parts
-    return page.stem if not rest else (folder, len(rest), page.stem == "index", bool({*page.parts} & WITH_RESULTS))
+    return (
+        page if len(rest) < 2 and folder not in ("reference", "slides") else (folder, len(rest), page.stem == "index")
+    )
 
 
-def to_look_at(pages):
-    """A page of each kind; with ALL_SAMPLES all of them, which takes a while."""
-    found = written(pages)
-    return sampled(list({kind(path.relative_to(pages)): path for path in reversed(found)}.values()), found)
+def of_each_kind(pages):
+    """A page of each kind: the many pages of one kind, such as a paper's equations, are all made the same way."""
+    return list({kind(path.relative_to(pages)): path for path in reversed(written(pages))}.values())
+
+
+looked_at = pytest.mark.parametrize("looked_at", [of_each_kind, pytest.param(written, marks=pytest.mark.night)])
 
 
 @pytest.mark.slow
@@ -137,17 +147,18 @@ def complaints_of(page):
 
 @pytest.mark.slow
 @pytest.mark.browser
-def test_every_page_opens_without_an_error_or_a_request(pages, browser):
+@looked_at
+def test_every_page_opens_without_an_error_or_a_request(pages, browser, looked_at):
     axe = (FRONT / "node_modules/axe-core/axe.min.js").read_text("utf-8")
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
-    complaints, labs, looked_at = complaints_of(page), 0, to_look_at(pages)
+    complaints, labs, closely = complaints_of(page), 0, looked_at(pages)
     for path in written(pages):
         page.goto(path.as_uri())
         if page.locator("[data-percept-obs]").count():
             page.wait_for_function(DRAWN)
             labs += page.locator("[data-percept-obs] .percept-lab").count()
         assert complaints == [], path
-        if path in looked_at:
+        if path in closely:
             page.evaluate(axe)
             found = page.evaluate("axe.run({ preload: false, resultTypes: ['violations'] })")["violations"]
             assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == [], path
@@ -157,23 +168,22 @@ def test_every_page_opens_without_an_error_or_a_request(pages, browser):
 
 @pytest.mark.slow
 @pytest.mark.browser
-def test_every_kind_of_page_fits_its_window_and_all_that_can_be_pressed_can_be_reached(pages, browser):
+@looked_at
+def test_a_page_fits_its_window_and_all_that_can_be_pressed_is_reached(pages, browser, looked_at):
     page, looked = browser.new_page(offline=True), 0
-    for path in to_look_at(pages):
+    for path in looked_at(pages):
         page.goto(path.as_uri())
         page.wait_for_function(ALL_DRAWN)
         looked += assert_fits(page, path)
-    print(f"{len(to_look_at(pages))} of {len(written(pages))} pages, {len(WIDTHS)} widths: {looked} controls reached")
+    print(f"{len(looked_at(pages))} of {len(written(pages))} pages, {len(WIDTHS)} widths: {looked} controls reached")
     page.close()
 
 
 @pytest.mark.slow
-def test_what_was_not_run_says_so_and_has_a_title_and_slides(pages):
+def test_every_notebook_was_run_and_has_a_title_and_slides(pages):
     for path in (pages / "notebooks").glob("[0-9]*.html"):
-        not_run = path.stem != Path(NOTEBOOK).stem and sampled(True, False)
         text = path.read_text("utf-8")
-        assert (NOT_RUN in text) is not_run
-        assert ("data-percept-obs" in text) is not not_run or not sampled(True, False)
+        assert NOT_RUN not in text
         slides = (pages / "slides" / path.name).read_text("utf-8")
         title = re.search(r"<h1>(.*?)<a", text)[1]
         assert f"<h1>{title}" in slides
@@ -198,7 +208,7 @@ def test_a_word_is_found_from_a_disk(pages, browser):
 
 
 @pytest.mark.slow
-def test_the_reference_shows_what_is_taken_and_raised_and_links_to_what_is_to_be_seen_also(pages):
+def test_the_reference_shows_what_is_taken_and_raised_and_links_to_the_like(pages):
     for path in (pages / "reference").glob("percept-obs*.html"):
         text = path.read_text(encoding="utf-8")
         assert not re.search(r'<ol class="\w*alpha', text), f"an initial such as R. begins a list in {path}"
@@ -249,6 +259,12 @@ def test_a_lab_on_a_slide_is_alive_and_its_keys_turn_no_slide(pages, browser):
     page.close()
 
 
+def test_what_was_not_run_says_so_below_its_title():
+    title, said, *rest = not_run(notebooks()[NOTEBOOK]).cells
+    assert (title.id, [cell.id for cell in rest][:2]) == ("title", ["goals", "lab"])
+    assert NOT_RUN in said.source
+
+
 def test_slides_are_the_cells_with_their_tag_and_the_exercises():
     notebook = nbformat.reads((NOTEBOOKS / NOTEBOOK).read_text("utf-8"), as_version=4)
     made = slides_of(notebook)
@@ -292,11 +308,12 @@ def test_a_lab_of_the_site_is_alive(shown, what):
 @pytest.mark.slow
 @pytest.mark.browser
 @pytest.mark.node
-def test_lighthouse_finds_every_page_open_to_all(pages, chromium, node):
+@looked_at
+def test_lighthouse_finds_every_page_open_to_all(pages, chromium, node, looked_at):
     modules = FRONT / "node_modules"
     if not (modules / "lighthouse").exists():
         missing("lighthouse", f"Lighthouse is missing; get it with: npm install --no-save lighthouse@12, in {FRONT}")
-    names = [path.relative_to(pages).as_posix() for path in to_look_at(pages)]
+    names = [path.relative_to(pages).as_posix() for path in looked_at(pages)]
     command = [node, SUPPORT / "lighthouse.mjs", modules, chromium, pages, *names]
     lines = subprocess.run(command, check=True, capture_output=True, encoding="utf-8").stdout.splitlines()
     found = [json.loads(line) for line in lines]

@@ -95,7 +95,7 @@ def calls():
         (Signal, {"samples": [[1.0], [2.0]], "times": [0.0, 1.0]}),
         (motion.known, {"times": [0.0, 1.0]}),
         (po.plane, {"normal": (0, 0.1, 1), "outputs": 2}),
-        (po.ImagingSurface, dict(zip(("name", "image", "distance", "ray"), _pinhole(), strict=True))),
+        (po.ImagingSurface, _parts(po.pinhole(), "name", "image", "distance", "ray")),
         (po.pinhole().project, {"points": [[1.0, 2.0, 3.0]]}),
         (po.pinhole().locate, {"coordinates": [[1.0, 2.0, 3.0]]}),
         (po.PerspectiveSystem, {"motion": po.affine(), "surface": po.pinhole()}),
@@ -120,7 +120,7 @@ def calls():
         (scenario.coordinates, {"times": [0.0, 1.0]}),
         (po.scenarios.ma2005_eq35, {"surface": po.pinhole()}),
         (po.record, {"scenario": scenario, "duration": 1.0, "camera": po.Camera(0.1), "seed": 1}),
-        (po.Recording, _parts(recording)),
+        (po.Recording, _parts(recording, "time", "outputs", "names", "view", "motion", *FURTHER)),
         (recording.between, {"begin": 0.5, "end": 1.5}),
         (recording.without, {"begin": 0.5, "end": 1.5, "point": 0}),
         (recording.sightings, {"absence": 1.0}),
@@ -235,14 +235,11 @@ EXTREME = (CANARY, *(value for value in STRANGE if isinstance(value, int | float
 """What every argument meets."""
 
 
-def _pinhole():
-    surface = po.pinhole()
-    return surface.name, surface.image, surface.distance, surface.ray
+FURTHER = ("truth", "noise_variance", "distances", "source")
 
 
-def _parts(recording):
-    names = ("time", "outputs", "names", "view", "motion", "truth", "noise_variance", "distances", "source")
-    return {name: getattr(recording, name) for name in names}
+def _parts(value, *names):
+    return {name: getattr(value, name) for name in names}
 
 
 def drawn(count, seed=0):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import importlib.util
-import multiprocessing
 import os
 import re
 import secrets
@@ -148,56 +147,6 @@ SETTLE = "import asyncio\nawait asyncio.sleep(0.3)  # what a callback put off ha
 JUDGE = "jupyter_harness.judge()"
 
 
-FORK = sys.platform == "linux"
-"""Kernels are forked from a process that has imported what notebooks import, which else takes them seconds each."""
-
-if FORK:
-    forks = multiprocessing.get_context("forkserver")
-    forks.set_forkserver_preload(["ipykernel.kernelapp", "matplotlib.pyplot", "numba", "pandas", "percept_obs.labs"])
-
-    class Kernel(forks.Process):
-        """A kernel in a forked process, which has the methods of `subprocess.Popen` that its manager calls."""
-
-        stdin = stdout = stderr = None
-
-        def __init__(self, connection: str, folder: str, environment: dict[str, str]) -> None:
-            super().__init__()
-            self.given = connection, folder, environment
-
-        def run(self) -> None:
-            from ipykernel.kernelapp import launch_new_instance
-
-            connection, folder, environment = self.given
-            os.environ.clear()
-            os.environ.update(environment, JPY_PARENT_PID=str(os.getppid()))  # with which it ends
-            os.chdir(folder)
-            launch_new_instance(argv=["-f", connection])
-
-        def poll(self) -> int | None:
-            return self.exitcode
-
-        def wait(self) -> int | None:
-            self.join()
-            return self.exitcode
-
-        def send_signal(self, number: int) -> None:
-            os.kill(self.pid, number)
-
-
-def fork_kernel(client) -> None:
-    """Let a client's kernel be a forked one."""
-    from jupyter_client.provisioning import LocalProvisioner
-
-    class Forked(LocalProvisioner):
-        async def launch_kernel(self, cmd, **options):
-            self.process = Kernel(client.km.connection_file, str(options["cwd"]), options["env"])
-            self.process.start()
-            return self.connection_info
-
-    manager = client.create_kernel_manager()
-    manager.provisioner = Forked(parent=manager, kernel_id="forked", kernel_spec=manager.kernel_spec)
-
-
 def execute(
     notebook: nbformat.NotebookNode,
     folder: Path,
@@ -206,25 +155,26 @@ def execute(
 ) -> dict[str, dict]:
     """Run a notebook in a fresh kernel in a folder, move its controls, and return the states of its widgets.
 
-    The outputs are put into the notebook.  Programs `beside` it run after the cell of their number.  Modules that are
-    `absent` are there as little as if they were not installed.
+    The outputs are put into the notebook, and figures are drawn as on the site.  Programs `beside` it run after the
+    cell of their number.  Modules that are `absent` are there as little as if they were not installed.
 
     Raises
     ------
     nbclient.exceptions.CellExecutionError
         If a cell fails or warns, or a control's callback does.
     """
-    from nbclient import NotebookClient
+    from percept_obs.site.kernels import client_of  # only here, for notebooks' kernels import this module, too
+    from percept_obs.site.notebooks import PREPARE
 
-    client = NotebookClient(notebook, kernel_name="python3", timeout=120, resources={"metadata": {"path": str(folder)}})
-    if FORK:
-        fork_kernel(client)
+    client = client_of(notebook, kernel_name="python3", timeout=120, resources={"metadata": {"path": str(folder)}})
     with client.setup_kernel():
-        _execute_beside(client, PRELUDE % set(absent))
+        for program in (PREPARE, PRELUDE % set(absent)):
+            _execute_beside(client, program)
         for k, cell in enumerate(notebook.cells):
             client.execute_cell(cell, k)
             for program in beside.get(k, ()):
                 _execute_beside(client, program)
+        client.set_widgets_metadata()
         for program in (MOVE, SETTLE, JUDGE):
             _execute_beside(client, program)
     return client.widget_state
@@ -319,7 +269,7 @@ class Server:
 def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
     """JupyterLab on a folder, with everything else that it writes kept in an empty folder `home`."""
     if importlib.util.find_spec("jupyterlab") is None:
-        from conftest import missing  # only here, for notebooks' kernels import this module, too
+        from needs import missing  # only here, for notebooks' kernels import this module, too
 
         missing("jupyterlab", 'JupyterLab is missing; get it with: python -m pip install "percept-obs[course]".')
     for name, text in SETTINGS.items():

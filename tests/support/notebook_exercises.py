@@ -50,6 +50,12 @@ def code(notebook):
     return ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
 
 
+def asked(notebook):
+    """The modules for which the first cell of code asks."""
+    calls = [node for node in ast.walk(ast.parse(code(notebook)[0])) if isinstance(node, ast.Call)]
+    return [each.value for call in calls if getattr(call.func, "id", "") == "needs" for each in call.args]
+
+
 def tagged(notebook, tag, kind):
     """The numbers of the cells of a kind that have a tag."""
     cells = enumerate(notebook["cells"])

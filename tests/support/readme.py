@@ -250,7 +250,7 @@ def few(image):
 
 def write_pictures():
     """Draw all pictures anew, and describe them."""
-    from conftest import found_chromium
+    from needs import found_chromium
 
     PICTURES.mkdir(exist_ok=True)
     drawn = {name: make() for name, make in FIGURES.items()}

@@ -24,7 +24,7 @@ s, y1, y2, b1, b2, b3 = sp.symbols("s y1 y2 b1 b2 b3", real=True)
 
 @pytest.mark.slow
 @pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)
-def test_the_size_grows_as_the_inverse_distance_on_every_surface_and_the_rest_is_as_without_it(surface):
+def test_the_size_grows_as_the_inverse_distance_and_the_rest_is_as_without(surface):
     plain, system = (PerspectiveSystem(affine(), each) for each in (surface, sized(surface)))
     *image, size, inverse = system.rate
     assert (system.foe, system.parameters) == (plain.foe, plain.parameters)
@@ -78,7 +78,7 @@ def test_the_radius_is_in_no_formula_and_a_form_without_one_fits_every_recording
 
 
 @pytest.mark.slow
-def test_straight_at_the_point_the_distance_is_found_to_the_bound_with_the_size_and_not_without():
+def test_straight_at_the_point_only_the_size_tells_the_distance():
     errors, ratio = {}, {}
     for form in (SYSTEM.measure("y1", "y2"), FORM):
         films = [record(STRAIGHT, 4, NOISY, seed) for seed in range(12)]
@@ -94,7 +94,7 @@ def test_straight_at_the_point_the_distance_is_found_to_the_bound_with_the_size_
 
 
 @pytest.mark.slow
-def test_without_a_truth_the_samples_bear_the_distance_out_and_many_runs_move_the_sphere():
+def test_without_a_truth_samples_bear_out_the_distance_and_runs_move_the_sphere():
     film = record(STRAIGHT, 4, NOISY, seed=1)
     run = track(replace(film, truth=None), ekf(FORM, noise_variance=1e-6))
     assert "the estimate agrees" in run.trust().sentence

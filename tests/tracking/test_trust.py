@@ -17,15 +17,15 @@ FILTER = ekf(FORM, noise_variance=4e-6, hidden_variance=0.1)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("make", sampled(OBSERVERS[2:3], OBSERVERS), ids=lambda make: make.key)
+@pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 def test_what_cannot_be_right_is_flagged_and_good_ones_are_not(make):
-    """100 of each for every observer with ALL_SAMPLES=1."""
-    count = sampled(3, 100)
+    """100 of each with ALL_SAMPLES=1; of few, none may be right of an observer that rarely is."""
+    count = sampled(1, 100)
     for kind in WRONG:
         assert flagged(make, kind, count)[0] >= 0.95, kind
     share, counted = flagged(make, "good", count)
-    assert counted
-    assert share <= 0.05
+    assert counted >= sampled(0, 1)
+    assert not share > 0.05
 
 
 @pytest.mark.slow
@@ -75,7 +75,7 @@ def test_with_errors_of_the_poses_few_wrong_ones_are_trusted_and_most_right_ones
 def test_on_real_tracks_few_wrong_ones_are_trusted():
     start = {"y3": 1 / 1.8}
     observer = ekf(FORM, noise_variance=7e-6, turning_noise=3.5e-4, measured_variance=1e-4, hidden_variance=1)
-    tracks = load_utias(UTIAS_CUT)[:: sampled(4, 1)]
+    tracks = load_utias(UTIAS_CUT)
     parts = [each.between(each.time[0], each.time[0] + length) for each in tracks for length in (1, 2, 3)]
     far_off, off, _ = shares([blindly(track(part, observer, start, language="numba")) for part in parts])
     assert far_off <= 0.01
