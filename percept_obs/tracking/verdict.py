@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from percept_obs.compile import Array
+from percept_obs.recording.camera import TOO_SHORT
 from percept_obs.tracking.information import Information
 
 REMEDY = "choose smaller gains or shorter steps"
@@ -31,7 +32,8 @@ FAR_OFF = 10.0
 
 VERDICTS = MappingProxyType(
     {
-        "diverged": "diverged at {time} s: the estimate grew beyond all bounds; {remedy}",
+        "diverged": "diverged at {time} s",
+        "grew": ": the estimate grew beyond all bounds",
         "followed": "followed {time} s; no truth to compare with",
         "none": "not converged: there is no estimate at the end",
         "behind": "not converged: the estimate ends infinitely far away or behind the camera",
@@ -62,7 +64,7 @@ VERDICTS = MappingProxyType(
         "more gaps": ", and in {count} more gaps",
     }
 )
-"""Sentences of verdicts by outcome, also of live labs.  Times count from the first sample."""
+"""Sentences of verdicts by outcome, also of figures and live labs.  Times count from the first sample."""
 
 
 BLIND = MappingProxyType(
@@ -85,7 +87,8 @@ BLIND = MappingProxyType(
 
 def for_the_page() -> dict[str, Any]:
     """Sentences and constants for live labs."""
-    return {"verdicts": dict(VERDICTS), "settledPart": SETTLED_PART, "tolerance": TOLERANCE, "farOff": FAR_OFF}
+    numbers = {"settledPart": SETTLED_PART, "tolerance": TOLERANCE, "farOff": FAR_OFF}
+    return {"verdicts": {**VERDICTS, "too short": TOO_SHORT}, **numbers}
 
 
 @dataclass(frozen=True)
@@ -171,7 +174,12 @@ def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Ou
         kind = "none" if math.isnan(final) else "behind" if math.isinf(final) else "outside"
         return Outcome(kind, math.inf, final)
     settled = float(elapsed[outside[-1] + 1]) if len(outside) else 0.0
-    return Outcome("converged" if length - settled >= SETTLED_PART * length else "late", settled, final)
+    return Outcome("converged" if stays(settled, length) else "late", settled, final)
+
+
+def stays(settled: Any, length: float) -> Any:
+    """Return True where an error settled early enough in a run of this length, in seconds, to be sure of the rest."""
+    return length - settled >= SETTLED_PART * length
 
 
 def in_words(found: Outcome, judged: str, tolerance: float, names: Sequence[str] = ()) -> str:
@@ -181,6 +189,11 @@ def in_words(found: Outcome, judged: str, tolerance: float, names: Sequence[str]
         kind, error, within = "absolute", number(found.final, 2), f"{tolerance:g}"
     fields = {"error_of": VERDICTS[kind], "judged": judged, "error": error, "tolerance": within}
     return VERDICTS[found.kind].format(**fields, time=number(found.settled))
+
+
+def diverged(seconds: float) -> str:
+    """When a run diverged, in words, from the seconds since its first sample."""
+    return VERDICTS["diverged"].format(time=number(seconds))
 
 
 def number(value: float, digits: int = 3) -> str:

@@ -35,7 +35,7 @@ from percept_obs.labs.observer.tracks import (
     typed_text,
     with_affine_motions,
 )
-from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
+from percept_obs.labs.shared.lab import NOISES, OF_ONE_POINT, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.schema import Choice, Settings
@@ -51,10 +51,8 @@ from percept_obs.system.apparent_size import sized
 from percept_obs.system.motion import Motion, affine
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface
-from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
-from percept_obs.tracking.verdict import REMEDY, for_the_page
 from percept_obs.validation import TooMuchWork, checked
 
 
@@ -175,9 +173,7 @@ class ObserverLab(Lab):
             varies={n: VARIES.format("motion") for n, make in self._registry.observers.items() if make.constant_motion},
             drive=DRIVE,
             bound={"noise": {kind: make(1.0).variance for kind, make in NOISES.items()}, "hidden": HIDDEN_VARIANCE},
-            **for_the_page(),
-            judged=DISTANCE,
-            remedy=REMEDY,
+            **OF_ONE_POINT,
         )
         self.frames = [{"time": np.asarray(f.time).tolist(), "extent": f.extent, "images": f.images} for f in shots]
 

@@ -29,6 +29,8 @@ from percept_obs.labs.shared.typed_motion import Blocks, read_motion
 from percept_obs.labs.shared.view import read_view
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
 from percept_obs.system.surfaces import BehindCamera
+from percept_obs.system.view import DISTANCE
+from percept_obs.tracking.verdict import REMEDY, for_the_page
 from percept_obs.validation import checked, write_whole
 
 BUNDLE = FRONT / "lab.js"
@@ -48,6 +50,12 @@ TYPED = ("motion", "P", "P0")
 MOST_WRITTEN = 50
 """Largest number of motions over time that are kept for the page."""
 
+LEAVES = "the point leaves the half-space in front of the camera at once"
+"""What is wrong with a point that is seen in one sample only, also in the page."""
+
+OF_ONE_POINT = {**for_the_page(), "judged": DISTANCE, "remedy": REMEDY, "leaves": LEAVES}
+"""Sentences and numbers of verdicts for the pages of one point."""
+
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
 
 
@@ -59,7 +67,7 @@ def record_while_seen(scenario: Scenario, camera: Camera, seed: int) -> Recordin
         times = camera.times(scenario.duration)
     count = int(np.argmin(scenario.in_front(times)))
     if count < 2:
-        raise BehindCamera("the point leaves the half-space in front of the camera at once; move it or turn the motion")
+        raise BehindCamera(f"{LEAVES}; move it or turn the motion")
     return record(scenario, times[count - 1], camera, seed)
 
 

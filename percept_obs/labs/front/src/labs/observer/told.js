@@ -10,7 +10,8 @@ import { readable } from "../../draw/scales.js";
 import { changeAt, same, valueAt } from "../../state/settings.js";
 import { claimedDistances } from "../../engine/errors.js";
 import { percent } from "../../ui/words.js";
-import { courseOf, distancesOf, FAR, metres, sentenceOf } from "./sentences.js";
+import { firstOf } from "../../ui/sentences.js";
+import { courseOf, distancesOf, FAR, metres, SENTENCES } from "./sentences.js";
 
 export { metres };
 
@@ -64,9 +65,10 @@ export function unseenSpans(shown) {
 
 export function sentence(screen, scene) {
   const { shown, now, chosen } = scene;
-  const { seen, moved, lab: { kernels } } = screen;
+  const { seen, moved, lab: { kernels, model: { verdicts } } } = screen;
   const unseen = unseenSpans(shown).some(({ begin, end }) => begin <= now && now <= end);
-  return sentenceOf({ ...scene, ...seen, moved, unseen, course: seen.truth && courseOf(kernels, shown, chosen) });
+  const course = seen.truth && courseOf(kernels, shown, chosen);
+  return firstOf(SENTENCES, { ...scene, ...seen, verdicts, moved, unseen, course });
 }
 
 export function controlsOf(lab) {

@@ -1,10 +1,11 @@
 // The screen of the lab of many points: a body's estimate is pulled, mark by mark, on to the rays of the marks.
 
 import { Screen } from "../../ui/screen.js";
+import { firstOf } from "../../ui/sentences.js";
 import { within } from "../../engine/between.js";
 import { PointsEngine } from "./engine.js";
 import { QUESTIONS } from "./questions.js";
-import { PARTS, seenOf, sentenceOf } from "./sentences.js";
+import { PARTS, seenOf, SENTENCES } from "./sentences.js";
 import { drawImage } from "./image.js";
 import { chartOf, controlsOf } from "./told.js";
 import { drawWorld } from "./world.js";
@@ -133,6 +134,6 @@ export class PointsScreen extends Screen {
   }
 
   sentence(scene) {
-    return sentenceOf({ ...scene, ...this.seen, moved: this.moved });
+    return firstOf(SENTENCES, { ...scene, ...this.seen, verdicts: this.lab.model.verdicts, moved: this.moved });
   }
 }

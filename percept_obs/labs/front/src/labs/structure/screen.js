@@ -2,13 +2,14 @@
 
 import { tick } from "../../ui/controls.js";
 import { Screen } from "../../ui/screen.js";
+import { firstOf } from "../../ui/sentences.js";
 import { within } from "../../engine/between.js";
 import { isTyped } from "../../engine/typed.js";
 import { element } from "../../draw/dom.js";
 import { KEPT } from "../../draw/looks.js";
 import { isSampled } from "./camera.js";
 import { QUESTIONS } from "./questions.js";
-import { hasStories, NEARLY, seenOf, sentenceOf, speed } from "./sentences.js";
+import { hasStories, NEARLY, seenOf, SENTENCES, speed } from "./sentences.js";
 import { knowledgeOf, ratiosOf, TRUE, unknownOf, Worlds } from "./worlds.js";
 import { drawMap, placeOfMap } from "./map.js";
 import { carAside, HIGH, metres } from "./marks.js";
@@ -293,7 +294,8 @@ export class StructureScreen extends Screen {
   }
 
   sentence({ why, ...scene }) {
-    return sentenceOf({ ...scene, ...this.seen, alike: why, moved: this.moved });
+    const { verdicts } = this.lab.model;
+    return firstOf(SENTENCES, { ...scene, ...this.seen, verdicts, alike: why, moved: this.moved });
   }
 }
 
