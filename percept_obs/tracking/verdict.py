@@ -43,17 +43,6 @@ VERDICTS = MappingProxyType(
             "be sure of the rest"
         ),
         "converged": "converged: the {error_of} of {judged} stays within {tolerance} after {time} s",
-        "agrees": "; the last {window} s of samples tell {judged} to within {within} (2σ), and the estimate agrees",
-        "differs": (
-            "; do not trust the estimate: it is {difference} off what the last {window} s of samples tell of {judged}, "
-            "to within {within} (2σ)"
-        ),
-        "vague": "; do not trust the estimate: {window} s of samples tell {judged} only to within {within} (2σ)",
-        "hidden": "; do not trust the estimate: {window} s of samples tell nothing of {judged}",
-        "no estimate": "; do not trust it: there is no estimate at the end",
-        "nowhere": "; do not trust the estimate: it ends infinitely far away or behind the camera",
-        "unexcited": ", hardly excited since {begin} s",
-        "claimed": "; it claims {claimed} (2σ)",
         "relative": "relative error",
         "absolute": "error",
         "reset once": "; driven to the bound and reset once, at {time} s",
@@ -69,6 +58,17 @@ VERDICTS = MappingProxyType(
 
 BLIND = MappingProxyType(
     {
+        "agrees": "; the last {window} s of samples tell {judged} to within {within} (2σ), and the estimate agrees",
+        "differs": (
+            "; do not trust the estimate: it is {difference} off what the last {window} s of samples tell of {judged}, "
+            "to within {within} (2σ)"
+        ),
+        "vague": "; do not trust the estimate: {window} s of samples tell {judged} only to within {within} (2σ)",
+        "hidden": "; do not trust the estimate: {window} s of samples tell nothing of {judged}",
+        "no estimate": "; do not trust it: there is no estimate at the end",
+        "nowhere": "; do not trust the estimate: it ends infinitely far away or behind the camera",
+        "unexcited": ", hardly excited since {begin} s",
+        "claimed": "; it claims {claimed} (2σ)",
         "contradicted": (
             "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} "
             "apart, so that the motion is not as it is known"
@@ -82,7 +82,7 @@ BLIND = MappingProxyType(
         "rests": "; this rests on the length of your translation",
     }
 )
-"""Sentences of trust that live labs, which know the truth, do not need."""
+"""Sentences of trust, of which live labs, which know the truth, need none."""
 
 
 def for_the_page() -> dict[str, Any]:
@@ -150,14 +150,14 @@ class Trust:
         """The judgement as the end of another sentence."""
         fields = {"judged": self.judged, "difference": percent(self.difference), "apart": percent(self.disagreement)}
         if self.information is None:
-            return {**VERDICTS, **BLIND}[self.kind].format(doubt=self.doubt)
+            return BLIND[self.kind].format(doubt=self.doubt)
         window, unexcited = self.information.window, self.information.unexcited
         fields |= {"window": number(window), "within": percent(2 * self.information.deviation)}
-        said = {**VERDICTS, **BLIND}[self.kind].format(**fields)
+        said = BLIND[self.kind].format(**fields)
         if unexcited >= SETTLED_PART * self.length:
-            said += VERDICTS["unexcited"].format(begin=number(self.length - unexcited))
+            said += BLIND["unexcited"].format(begin=number(self.length - unexcited))
         if self.claimed is not None:
-            said += VERDICTS["claimed"].format(claimed=percent(2 * self.claimed))
+            said += BLIND["claimed"].format(claimed=percent(2 * self.claimed))
         return said + (BLIND["rests"] if self.kind in ("agrees", "differs", "wide") else "")
 
 

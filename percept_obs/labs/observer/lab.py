@@ -14,16 +14,7 @@ import traitlets
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.analysis import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.observer.registry import refuse_other_motion, registry_of, view_of, with_numbers
-from percept_obs.labs.observer.settings import (
-    DRIVE,
-    HOLDS,
-    LOOKS,
-    SCENARIOS,
-    SCHEMA,
-    STANDARD,
-    as_settings,
-    schema_of,
-)
+from percept_obs.labs.observer.settings import DRIVE, HOLDS, LOOKS, SCENARIOS, SCHEMA, STANDARD, as_settings, schema_of
 from percept_obs.labs.observer.texts import BLOCKS, BY_NAME, MOTION, RADIUS, SIZE
 from percept_obs.labs.observer.tracks import (
     VARIES,

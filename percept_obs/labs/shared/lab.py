@@ -47,9 +47,6 @@ ValueError
 TYPED = ("motion", "P", "P0")
 """The settings that are expressions of time."""
 
-MOST_WRITTEN = 50
-"""Largest number of motions over time that are kept for the page."""
-
 LEAVES = "the point leaves the half-space in front of the camera at once"
 """What is wrong with a point that is seen in one sample only, also in the page."""
 
@@ -183,16 +180,13 @@ class Lab(anywidget.AnyWidget):
         """Print the motions over time of settings for the page."""
         kept = settings.get("kept") or {}
         for text in (each.get(name, "") for each in (settings, kept) for name in TYPED):
-            if text.strip() and "source" not in self.written.get(text, {}):
-                self._write(text)
-
-    def _write(self, text: str) -> None:
-        try:
-            answer = self.typed_for_the_page(text)
-        except ValueError as error:
-            answer = {"refusal": str(error), "position": getattr(error, "position", None)}
-        kept = [item for item in self.written.items() if item[0] != text][1 - MOST_WRITTEN :]
-        self.written = dict([*kept, (text, answer)])
+            if not text.strip() or text in self.written:
+                continue
+            try:
+                answer = self.typed_for_the_page(text)
+            except ValueError as error:  # of a P that no kind of P uses now
+                answer = {"refusal": str(error)}
+            self.written = {**self.written, text: answer}
 
     def run(self) -> Any:
         """Runs of the present settings in Python, by the observers' names; of many points the run of all of them."""

@@ -14,15 +14,13 @@ export const isEarly = ({ now, end, shown: { time } }, part) => now - time[0] < 
 
 const divergedAt = ({ run, shown }) => (run ?? shown).divergedAt;
 
-/** A text as a sentence. */
-export const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
-
 /** @type {Sentence} */
 export const DIVERGED = {
   when: (facts) => divergedAt(facts) !== null && divergedAt(facts) <= facts.now,
   text: (facts) => {
     const { verdicts, shown: { time } } = facts;
-    return sentence(filled(verdicts.diverged, { time: short(divergedAt(facts) - time[0]) }) + verdicts.grew);
+    const text = filled(verdicts.diverged, { time: short(divergedAt(facts) - time[0]) });
+    return `${text[0].toUpperCase()}${text.slice(1)}${verdicts.grew}.`;
   },
 };
 

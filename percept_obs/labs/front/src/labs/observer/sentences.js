@@ -10,7 +10,8 @@ import { shapeOf } from "./camera.js";
 /** Image coordinates of more than this are not looked at. */
 export const MOST = 3;
 /** The estimate and the truth are written in metres up to this, and in centimetres below that. */
-export const [FAR, NEARBY] = [999, 2];
+export const FAR = 999;
+const NEARBY = 2;
 /** Part of the run in which the first look is told, and the last one, in which an estimate has to be steady. */
 const [EARLY, LAST] = [0.15, 0.25];
 /** A velocity in the image below which nothing moves. */

@@ -19,6 +19,7 @@ const [LEAST_ERROR, MOST_ERROR] = [0.5, 4];
 const [SWING, SWINGS] = [0.45, 2600];
 
 export class PointsScreen extends Screen {
+  static parts = { drawImage, drawWorld, chartOf };
   /** Amounts of the directions that no picture shows, as a hand has dragged the copy. */
   amounts = /** @type {number[] | null} */ (null);
   looked = 0;
@@ -120,18 +121,6 @@ export class PointsScreen extends Screen {
   seen = /** @type {any} */ (null);
   /** True once the copy of the first look was left behind. */
   left = false;
-
-  drawImage(scene, motion, note) {
-    return drawImage(this, scene, motion, note);
-  }
-
-  drawWorld(scene, motion, note) {
-    return drawWorld(this, scene, motion, note);
-  }
-
-  chartOf(scene) {
-    return chartOf(scene);
-  }
 
   sentence(scene) {
     return firstOf(SENTENCES, { ...scene, ...this.seen, verdicts: this.lab.model.verdicts, moved: this.moved });

@@ -23,7 +23,7 @@ export function isPlane({ state, points }) {
 }
 
 /** Metres off within which every mark must be for the body to be found; for one point, a part of its distance. */
-export function nearEnough({ settings: { points } }) {
+function nearEnough({ settings: { points } }) {
   const apart = points.flatMap((one) => points.map((other) => Math.hypot(...one.map((value, i) => value - other[i]))));
   return ON_IT * (Math.max(...apart) || Math.hypot(...points[0]));
 }
