@@ -24,17 +24,7 @@ from percept_obs.tracking.information import (
     one_point,
     relative_deviation,
 )
-from percept_obs.tracking.verdict import (
-    REMEDY,
-    TOLERANCE,
-    VERDICTS,
-    Outcome,
-    Trust,
-    diverged,
-    in_words,
-    number,
-    outcome,
-)
+from percept_obs.tracking.verdict import REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, number, outcome
 from percept_obs.validation import checked
 
 
@@ -401,7 +391,8 @@ class Run:
             See `outcome`.
         """
         if self.diverged_at is not None:
-            return f"{diverged(self.diverged_at - self.time[0])}{VERDICTS['grew']}; {self.remedy}"
+            time = number(self.diverged_at - self.time[0])
+            return f"{VERDICTS['diverged'].format(time=time)}{VERDICTS['grew']}; {self.remedy}"
         if self.recording.truth is None or not self._known.any():
             said = VERDICTS["followed"].format(time=number(self.elapsed[-1]))
             said += "" if names else self.trust(tolerance).clause

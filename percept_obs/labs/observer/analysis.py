@@ -25,26 +25,23 @@ Chosen = tuple[Observer, str]
 
 
 def excitation_in_words(form: PartitionedSystem, recording: Recording, window: float) -> list[str]:
-    """Sentences on what windows of this length, in seconds, show of the coordinates; the page tells of w by itself."""
+    """Sentences on the coordinates that outputs show in windows of this length, in seconds, with dynamics counted."""
     if form.culprits:
         return [f"There is no canonical form, and so no w: {', '.join(form.culprits)} do not enter linearly."]
-    return [] if recording.truth is None else [_shown_in_words(form, recording, window)]
-
-
-def _shown_in_words(form: PartitionedSystem, recording: Recording, window: float) -> str:
-    """Sentence on the coordinates that the outputs show, where the dynamics are counted as well."""
+    if recording.truth is None:
+        return []
     shown = error_gramian(recording, form, window)
     counted = "With the dynamics counted, the outputs of"
     if shown.holds:
-        return f"{counted} each window of {window:g} s show all of {', '.join(shown.names)}."
+        return [f"{counted} each window of {window:g} s show all of {', '.join(shown.names)}."]
     lost, begin = shown.lost(), shown.time[shown.weakest]
     missed = [direction if direction in shown.names else f"the direction {direction}" for direction in lost]
     told = [name for name in shown.names if not any(name in direction.split() for direction in lost)]
     rest = f" They show {' and '.join(told)}." if told else ""
-    return (
+    return [
         f"{counted} the {window:g} s that begin at {begin:.3g} s do not show {' and '.join(missed)}: "
         f"no observer can find it there.{rest}"
-    )
+    ]
 
 
 def has_words(chosen: Chosen) -> bool:
