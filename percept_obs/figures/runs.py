@@ -15,7 +15,7 @@ from percept_obs.recording import Recording
 from percept_obs.studies.consistency import claimed_distance
 from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.tracking.run import Run
-from percept_obs.tracking.verdict import TOLERANCE
+from percept_obs.tracking.verdict import TOLERANCE, diverged
 
 RESIDUALS: tuple[dict[str, Any], ...] = (
     {"color": look.BLUE, "linestyle": "-"},
@@ -122,12 +122,12 @@ def _mark_resets_and_divergence(ax: Axes, run: Run, named: bool) -> None:
         tick: dict[str, Any] = {"color": look.PURPLE, "linewidth": 1, "clip_on": False, "label": "reset"}
         ax.vlines(run.resets - run.time[0], 1, 1.05, transform=ax.get_xaxis_transform(), **tick)
     if run.diverged_at is not None:
-        diverged = run.diverged_at - run.time[0]
-        ax.axvspan(diverged, run.elapsed[-1], color=look.PALE, zorder=0)
-        ax.axvline(diverged, color=look.GREY, linewidth=1)
-        aside, ha = (6, "left") if diverged < run.elapsed[-1] / 2 else (-6, "right")
+        end = run.diverged_at - run.time[0]
+        ax.axvspan(end, run.elapsed[-1], color=look.PALE, zorder=0)
+        ax.axvline(end, color=look.GREY, linewidth=1)
+        aside, ha = (6, "left") if end < run.elapsed[-1] / 2 else (-6, "right")
         place: dict[str, Any] = {"xycoords": ax.get_xaxis_transform(), "textcoords": "offset points", "va": "center"}
-        ax.annotate(f"diverged at {diverged:.3g} s" if named else "", (diverged, 0.5), (aside, 0), ha=ha, **place)
+        ax.annotate(diverged(end) if named else "", (end, 0.5), (aside, 0), ha=ha, **place)
 
 
 @figure("runs, labels or axes do not fit each other, or the truth or the coordinate is not known")
@@ -305,7 +305,7 @@ def _descriptions(runs: Sequence[Run]) -> list[str]:
 
 def _with_divergence(runs: Sequence[Run], labels: Sequence[str]) -> list[str]:
     """Add the time of divergence to labels."""
-    ends = ["" if run.diverged_at is None else f", diverged at {run.diverged_at:.3g} s" for run in runs]
+    ends = ["" if run.diverged_at is None else f", {diverged(run.diverged_at - run.time[0])}" for run in runs]
     return [f"{name}{end}" for name, end in zip(labels, ends, strict=True)]
 
 

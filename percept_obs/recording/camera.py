@@ -15,6 +15,9 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.view import View
 from percept_obs.validation import checked, limit
 
+TOO_SHORT = "a duration of {duration} s holds no two samples {period} s apart; record longer"
+"""What is wrong with a recording of one sample, also in live labs."""
+
 Seed = np.random.Generator | int
 
 
@@ -175,7 +178,7 @@ class Camera:
             "shorten the duration or lengthen the camera's period",
         )
         if not duration >= self.period * (1 - 1e-9):
-            raise ValueError(f"a duration of {duration} s holds no two samples {self.period} s apart; record longer")
+            raise ValueError(TOO_SHORT.format(duration=f"{duration:g}", period=f"{self.period:g}"))
         return self.period * np.arange(int(np.floor(duration / self.period + 1e-9)) + 1, dtype=float)
 
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:

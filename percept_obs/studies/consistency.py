@@ -11,6 +11,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from percept_obs.compile import Array
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.verdict import diverged
 from percept_obs.validation import checked
 
 __all__ = ["Consistency", "check_consistency", "claimed_distance", "claimed_interval"]
@@ -256,7 +257,7 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
     if run.diverged_at is not None:
-        raise ValueError(f"the run diverged at {run.diverged_at - run.time[0]:.3g} s, so that it is not consistent")
+        raise ValueError(f"the run {diverged(run.diverged_at - run.time[0])}, so that it is not consistent")
     nis = run.nis
     counted = np.isfinite(nis) & from_the_start(run.elapsed, after)
     there = int(counted.sum())

@@ -12,7 +12,7 @@ from percept_obs.compile import Array
 from percept_obs.compile.batch_loop import COLUMNS, Statistics
 from percept_obs.observers.base import Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
-from percept_obs.tracking.verdict import SETTLED_PART
+from percept_obs.tracking.verdict import stays
 
 OUTCOMES = ("converged", "late", "outside", "behind", "none", "diverged")
 """Kinds of `Outcome`, in the order of their numbers."""
@@ -101,7 +101,7 @@ def statistics_of(sums: Array, elapsed: Array, grid: Array, late: int) -> dict[s
     outside, diverged = column["outside"].astype(int), column["diverged"].astype(int)
     settled = np.where(outside < last, elapsed[np.minimum(outside + 1, last)], np.inf)
     outcome = np.select(
-        [diverged > 0, elapsed[-1] - settled >= SETTLED_PART * elapsed[-1], outside < last],
+        [diverged > 0, stays(settled, elapsed[-1]), outside < last],
         [DIVERGED, CONVERGED, LATE],
         np.select([np.isnan(judged), np.isinf(judged)], [NONE, BEHIND], OUTSIDE),
     )

@@ -392,7 +392,7 @@ class Run:
         """
         if self.diverged_at is not None:
             time = number(self.diverged_at - self.time[0])
-            return VERDICTS["diverged"].format(time=time, remedy=self.remedy)
+            return f"{VERDICTS['diverged'].format(time=time)}{VERDICTS['grew']}; {self.remedy}"
         if self.recording.truth is None or not self._known.any():
             said = VERDICTS["followed"].format(time=number(self.elapsed[-1]))
             said += "" if names else self.trust(tolerance).clause

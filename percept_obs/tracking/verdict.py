@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from percept_obs.compile import Array
+from percept_obs.recording.camera import TOO_SHORT
 from percept_obs.tracking.information import Information
 
 REMEDY = "choose smaller gains or shorter steps"
@@ -31,7 +32,8 @@ FAR_OFF = 10.0
 
 VERDICTS = MappingProxyType(
     {
-        "diverged": "diverged at {time} s: the estimate grew beyond all bounds; {remedy}",
+        "diverged": "diverged at {time} s",
+        "grew": ": the estimate grew beyond all bounds",
         "followed": "followed {time} s; no truth to compare with",
         "none": "not converged: there is no estimate at the end",
         "behind": "not converged: the estimate ends infinitely far away or behind the camera",
@@ -41,6 +43,21 @@ VERDICTS = MappingProxyType(
             "be sure of the rest"
         ),
         "converged": "converged: the {error_of} of {judged} stays within {tolerance} after {time} s",
+        "relative": "relative error",
+        "absolute": "error",
+        "reset once": "; driven to the bound and reset once, at {time} s",
+        "reset often": "; driven to the bound and reset {count} times, first at {time} s",
+        "gap": "; no estimate from {begin} to {end} s, for {reason}",
+        "short gap": "; no estimate at {begin} s, for {reason}",
+        "one more gap": ", and in one more gap",
+        "more gaps": ", and in {count} more gaps",
+    }
+)
+"""Sentences of verdicts by outcome, also of figures and live labs.  Times count from the first sample."""
+
+
+BLIND = MappingProxyType(
+    {
         "agrees": "; the last {window} s of samples tell {judged} to within {within} (2σ), and the estimate agrees",
         "differs": (
             "; do not trust the estimate: it is {difference} off what the last {window} s of samples tell of {judged}, "
@@ -52,21 +69,6 @@ VERDICTS = MappingProxyType(
         "nowhere": "; do not trust the estimate: it ends infinitely far away or behind the camera",
         "unexcited": ", hardly excited since {begin} s",
         "claimed": "; it claims {claimed} (2σ)",
-        "relative": "relative error",
-        "absolute": "error",
-        "reset once": "; driven to the bound and reset once, at {time} s",
-        "reset often": "; driven to the bound and reset {count} times, first at {time} s",
-        "gap": "; no estimate from {begin} to {end} s, for {reason}",
-        "short gap": "; no estimate at {begin} s, for {reason}",
-        "one more gap": ", and in one more gap",
-        "more gaps": ", and in {count} more gaps",
-    }
-)
-"""Sentences of verdicts by outcome, also of live labs.  Times count from the first sample."""
-
-
-BLIND = MappingProxyType(
-    {
         "contradicted": (
             "; do not trust the estimate: the last {window} s and longer ones of samples tell {judged} as {apart} "
             "apart, so that the motion is not as it is known"
@@ -80,12 +82,13 @@ BLIND = MappingProxyType(
         "rests": "; this rests on the length of your translation",
     }
 )
-"""Sentences of trust that live labs, which know the truth, do not need."""
+"""Sentences of trust, of which live labs, which know the truth, need none."""
 
 
 def for_the_page() -> dict[str, Any]:
     """Sentences and constants for live labs."""
-    return {"verdicts": dict(VERDICTS), "settledPart": SETTLED_PART, "tolerance": TOLERANCE, "farOff": FAR_OFF}
+    numbers = {"settledPart": SETTLED_PART, "tolerance": TOLERANCE, "farOff": FAR_OFF}
+    return {"verdicts": {**VERDICTS, "too short": TOO_SHORT}, **numbers}
 
 
 @dataclass(frozen=True)
@@ -147,14 +150,14 @@ class Trust:
         """The judgement as the end of another sentence."""
         fields = {"judged": self.judged, "difference": percent(self.difference), "apart": percent(self.disagreement)}
         if self.information is None:
-            return {**VERDICTS, **BLIND}[self.kind].format(doubt=self.doubt)
+            return BLIND[self.kind].format(doubt=self.doubt)
         window, unexcited = self.information.window, self.information.unexcited
         fields |= {"window": number(window), "within": percent(2 * self.information.deviation)}
-        said = {**VERDICTS, **BLIND}[self.kind].format(**fields)
+        said = BLIND[self.kind].format(**fields)
         if unexcited >= SETTLED_PART * self.length:
-            said += VERDICTS["unexcited"].format(begin=number(self.length - unexcited))
+            said += BLIND["unexcited"].format(begin=number(self.length - unexcited))
         if self.claimed is not None:
-            said += VERDICTS["claimed"].format(claimed=percent(2 * self.claimed))
+            said += BLIND["claimed"].format(claimed=percent(2 * self.claimed))
         return said + (BLIND["rests"] if self.kind in ("agrees", "differs", "wide") else "")
 
 
@@ -171,7 +174,12 @@ def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Ou
         kind = "none" if math.isnan(final) else "behind" if math.isinf(final) else "outside"
         return Outcome(kind, math.inf, final)
     settled = float(elapsed[outside[-1] + 1]) if len(outside) else 0.0
-    return Outcome("converged" if length - settled >= SETTLED_PART * length else "late", settled, final)
+    return Outcome("converged" if stays(settled, length) else "late", settled, final)
+
+
+def stays(settled: Any, length: float) -> Any:
+    """Return True where an error settled early enough in a run of this length, in seconds, to be sure of the rest."""
+    return length - settled >= SETTLED_PART * length
 
 
 def in_words(found: Outcome, judged: str, tolerance: float, names: Sequence[str] = ()) -> str:
@@ -181,6 +189,11 @@ def in_words(found: Outcome, judged: str, tolerance: float, names: Sequence[str]
         kind, error, within = "absolute", number(found.final, 2), f"{tolerance:g}"
     fields = {"error_of": VERDICTS[kind], "judged": judged, "error": error, "tolerance": within}
     return VERDICTS[found.kind].format(**fields, time=number(found.settled))
+
+
+def diverged(seconds: float) -> str:
+    """When a run diverged, in words, from the seconds since its first sample."""
+    return VERDICTS["diverged"].format(time=number(seconds))
 
 
 def number(value: float, digits: int = 3) -> str:

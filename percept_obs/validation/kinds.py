@@ -125,7 +125,6 @@ _KINDS: Mapping[Any, Kind] = {
     sp.Expr: Kind("a real number or a sympy expression", _is_expression, by_type=True),
     sp.ImmutableMatrix: Kind("a sympy matrix", lambda v: isinstance(v, sp.MatrixBase), by_type=True),
     NoneType: NOTHING,
-    None: NOTHING,
 }
 _ARRAYS = (np.ndarray, get_origin(NDArray[np.float64]))  # the second is an alias of the first from Python 3.12 on
 

@@ -60,5 +60,5 @@ def test_what_would_keep_the_kernel_busy_is_said_and_not_begun(name, fast, monke
 @pytest.mark.parametrize("name", ["observer", "structure"])  # those of many points are never so short
 def test_a_run_of_a_single_sample_is_told(name):
     assert LABS[name](duration=0.5, period=1.0).analyse() == {
-        "sentences": ["A duration of 0.5 s holds no two samples 1 s apart."]
+        "sentences": ["a duration of 0.5 s holds no two samples 1 s apart; record longer"]
     }

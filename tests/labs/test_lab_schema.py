@@ -76,7 +76,7 @@ def outside(kind, value):
         Entries: lambda: [7, {"x" * (kind.longest + 1): ""}, dict.fromkeys(range(kind.most + 1)), {"it": object()}],
     }.get(type(kind), lambda: [7])()
     yield from ((each, "it must be ") for each in bad)
-    if isinstance(kind, Number) and not kind.zero:
+    if isinstance(kind, Number) and kind.nonzero:
         yield 0, "not 0"
     if isinstance(kind, Group):
         yield {**value, "nothing": 1}, "has no nothing; there are "
@@ -160,7 +160,7 @@ def test_a_number_says_its_range_and_its_reason():
     whole = Number(low=0, high=2**32 - 1, whole=True)
     assert whole.expected == "a whole number from 0 to 4294967295"
     with pytest.raises(ValueError, match=r"^n 2 is 0; it must be a number from -1 to 1, not 0; why$"):
-        Row(entries=[Number(), Number(low=-1, high=1, zero=False, reason="why")]).read("n", [0, 0])
+        Row(entries=[Number(), Number(low=-1, high=1, nonzero=True, reason="why")]).read("n", [0, 0])
 
 
 def test_a_kind_of_its_own_says_what_it_expects_and_how_it_reads():

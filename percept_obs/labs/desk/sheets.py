@@ -15,18 +15,13 @@ from percept_obs.checking.lines import Line
 from percept_obs.compile import definitions, in_letters
 from percept_obs.labs.desk.systems import OBSERVERS, observer_of
 from percept_obs.labs.shared.equations import equations_of
-from percept_obs.labs.shared.markup import dotted, formula, markup, row, words
+from percept_obs.labs.shared.markup import dotted, formula, listed, markup, row
 from percept_obs.system.derivation import Derivation, Step, rates
 from percept_obs.system.motion import Motion, affine
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT
 
-PARTS = {
-    "rate": "the image's motion",
-    "form": "w, φ and g",
-    "observer": "an observer",
-    "error": "its error dynamics",
-}
+PARTS = {"rate": "the image's motion", "form": "w, φ and g", "observer": "an observer", "error": "its error dynamics"}
 """Parts of a derivation, each of which needs those before it."""
 
 NAMES = {
@@ -99,7 +94,7 @@ def _rate(system: PerspectiveSystem, outputs: tuple[str, ...], observer: str) ->
     kept = steps[:1] + [step for before, step in pairwise(steps) if list(step.values) != list(before.values)]
     given = [
         _moving(system.motion),
-        row(*_listed(formula(sp.Symbol(name), e) for name, e in seen.items())),
+        row(*listed(formula(sp.Symbol(name), e) for name, e in seen.items())),
         *_named_in(surface.ray),
     ]
     image = tuple(f"{s.name}'" for s in surface.image_coordinates)
@@ -152,7 +147,7 @@ def _known(system: PerspectiveSystem, outputs: tuple[str, ...]) -> list[str]:
     return [
         *(formula(dotted(s), rate) for s, rate in zip(system.coordinates, system.rate, strict=True)),
         *_named_in(system.rate),
-        row("measured", *_listed(measured), "; hidden", *_listed(hidden)),
+        row("measured", *listed(measured), "; hidden", *listed(hidden)),
     ]
 
 
@@ -163,7 +158,3 @@ def _named_in(expressions: Iterable[sp.Expr]) -> list[str]:
 
 def _in_letters(observer: str) -> list[str]:
     return list(equations_of(OBSERVERS[observer])[-1]["lines"])
-
-
-def _listed(formulas: Iterable[str]) -> list[str]:
-    return [part for k, text in enumerate(formulas) for part in ([words(","), text] if k else [text])]

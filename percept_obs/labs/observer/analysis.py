@@ -8,7 +8,7 @@ import sympy as sp
 from scipy.linalg import expm
 
 from percept_obs.compile import vectorised
-from percept_obs.observability import error_gramian, windowed
+from percept_obs.observability import error_gramian
 from percept_obs.observers import Observer
 from percept_obs.observers.parts import hats
 from percept_obs.recording import Recording
@@ -25,30 +25,23 @@ Chosen = tuple[Observer, str]
 
 
 def excitation_in_words(form: PartitionedSystem, recording: Recording, window: float) -> list[str]:
-    """Sentences on what windows of this length, in seconds, show of the coordinates."""
+    """Sentences on the coordinates that outputs show in windows of this length, in seconds, with dynamics counted."""
     if form.culprits:
         return [f"There is no canonical form, and so no w: {', '.join(form.culprits)} do not enter linearly."]
-    least = windowed(form.canonical_form(), recording, window).least
-    start = (
-        f"Over every window of {window:g} s the smallest eigenvalue of the integral of w wᵀ is at least {least:.2g}."
-    )
-    return [start, _shown_in_words(form, recording, window)] if recording.truth is not None else [start]
-
-
-def _shown_in_words(form: PartitionedSystem, recording: Recording, window: float) -> str:
-    """Sentence on the coordinates that the outputs show, where the dynamics are counted as well."""
+    if recording.truth is None:
+        return []
     shown = error_gramian(recording, form, window)
     counted = "With the dynamics counted, the outputs of"
     if shown.holds:
-        return f"{counted} each such window show all of {', '.join(shown.names)}."
+        return [f"{counted} each window of {window:g} s show all of {', '.join(shown.names)}."]
     lost, begin = shown.lost(), shown.time[shown.weakest]
     missed = [direction if direction in shown.names else f"the direction {direction}" for direction in lost]
     told = [name for name in shown.names if not any(name in direction.split() for direction in lost)]
     rest = f" They show {' and '.join(told)}." if told else ""
-    return (
-        f"{counted} the window that begins at {begin:.3g} s do not show {' and '.join(missed)}: "
+    return [
+        f"{counted} the {window:g} s that begin at {begin:.3g} s do not show {' and '.join(missed)}: "
         f"no observer can find it there.{rest}"
-    )
+    ]
 
 
 def has_words(chosen: Chosen) -> bool:

@@ -14,16 +14,7 @@ import traitlets
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.analysis import excitation_in_words, has_words, run_in_words
 from percept_obs.labs.observer.registry import refuse_other_motion, registry_of, view_of, with_numbers
-from percept_obs.labs.observer.settings import (
-    DRIVE,
-    HOLDS,
-    LOOKS,
-    SCENARIOS,
-    SCHEMA,
-    STANDARD,
-    as_settings,
-    schema_of,
-)
+from percept_obs.labs.observer.settings import DRIVE, HOLDS, LOOKS, SCENARIOS, SCHEMA, STANDARD, as_settings, schema_of
 from percept_obs.labs.observer.texts import BLOCKS, BY_NAME, MOTION, RADIUS, SIZE
 from percept_obs.labs.observer.tracks import (
     VARIES,
@@ -35,7 +26,7 @@ from percept_obs.labs.observer.tracks import (
     typed_text,
     with_affine_motions,
 )
-from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
+from percept_obs.labs.shared.lab import NOISES, OF_ONE_POINT, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.schema import Choice, Settings
@@ -51,10 +42,8 @@ from percept_obs.system.apparent_size import sized
 from percept_obs.system.motion import Motion, affine
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface
-from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
-from percept_obs.tracking.verdict import REMEDY, for_the_page
 from percept_obs.validation import TooMuchWork, checked
 
 
@@ -175,9 +164,7 @@ class ObserverLab(Lab):
             varies={n: VARIES.format("motion") for n, make in self._registry.observers.items() if make.constant_motion},
             drive=DRIVE,
             bound={"noise": {kind: make(1.0).variance for kind, make in NOISES.items()}, "hidden": HIDDEN_VARIANCE},
-            **for_the_page(),
-            judged=DISTANCE,
-            remedy=REMEDY,
+            **OF_ONE_POINT,
         )
         self.frames = [{"time": np.asarray(f.time).tolist(), "extent": f.extent, "images": f.images} for f in shots]
 

@@ -66,7 +66,7 @@ SCHEMA = Schema(
     normal=Row(
         [
             *(Number(label=label, **_TILT) for label in ("n1", "n2")),
-            Number(1.0, label="n3", zero=False, reason=_NOT_ALONG, **_TILT),
+            Number(1.0, label="n3", nonzero=True, reason=_NOT_ALONG, **_TILT),
         ],
         about="the normal vector of a plane",
     ),

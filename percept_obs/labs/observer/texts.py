@@ -9,14 +9,14 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from percept_obs.compile import definitions, function_source, source
+from percept_obs.compile import definitions, function_source
 from percept_obs.labs.shared.markup import dotted, formula, markup
+from percept_obs.labs.shared.observer_texts import point_for_the_page
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.labs.shared.surfaces import SURFACES
 from percept_obs.labs.shared.user_observers import Maker, loops_for_the_page, texts_of_observer
 from percept_obs.observability.pointwise import instantaneous
 from percept_obs.observers import OBSERVERS, Observer
-from percept_obs.recording.simulation import point_in_motion
 from percept_obs.system.apparent_size import sized
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.motion import affine
@@ -87,8 +87,7 @@ def model_for_the_page() -> Texts:
     pinhole = SURFACES["pinhole"]()
     ways = {n: {way: observer_on(BY_NAME[n], pinhole, ("y1", "y2"), way) for way in each} for n, each in WAYS.items()}
     return {
-        "rates": function_source(MOTION.parameters, tuple(MOTION.A.row_join(MOTION.b))),
-        "plant": source(point_in_motion(MOTION.A, MOTION.b, MOTION.parameters), "javascript"),
+        **point_for_the_page(MOTION),
         "surfaces": {
             name: surface_for_the_page(make(), system_of(name).output_choices) for name, make in SURFACES.items()
         },

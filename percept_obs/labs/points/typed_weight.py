@@ -13,7 +13,7 @@ from percept_obs.checking.reading import read
 from percept_obs.compile import Array, function_source, python_text, vectorised
 from percept_obs.labs.shared.printed import Texts
 from percept_obs.labs.shared.schema import Settings
-from percept_obs.labs.shared.typed_motion import INSTANTS
+from percept_obs.labs.shared.typed_motion import INSTANTS, refuse_values
 from percept_obs.points import LyapunovMatrix, constant, lyapunov, riccati, scheduled
 from percept_obs.system.motion import TIME
 from percept_obs.system.signal import OverTime
@@ -122,12 +122,8 @@ def refuse_P(settings: Settings) -> None:
     times = np.linspace(0, settings["duration"], INSTANTS)
     with np.errstate(all="ignore"):
         found = _entries(diagonal, times, settings["size"])
-    bad = np.argwhere(~((found > LEAST) & (found < LARGEST)))
-    if len(bad):
-        row, column = bad[0]
-        raise ValueError(
-            f"{name} is {found[row, column]:.4g} at {times[row]:.4g} s; it must be from 1e-9 to 1e9 at all times"
-        )
+    good = (found > LEAST) & (found < LARGEST)
+    refuse_values([name] * found.shape[1], times, found, good, "from 1e-9 to 1e9 at all times")
 
 
 def _varies(diagonal: Diagonal) -> bool:

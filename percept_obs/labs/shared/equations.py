@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.labs.shared.markup import after, dotted, formula, markup, row, words
+from percept_obs.labs.shared.markup import after, dotted, formula, listed, markup, row
 from percept_obs.observers import Observer, equivariant_filter, extended_kalman, gpebo, linear_approximation
 from percept_obs.observers.inversion import elapsed
 from percept_obs.observers.parts import hats
@@ -68,7 +68,7 @@ def in_scalars(observer: Observer, zero: Sequence[sp.Symbol] = ()) -> list[str]:
     starts = zip(equations.state, observer.start, strict=True)
     begun = [formula(s, value, letters) for s, value in starts if value in letters.values()]
     if begun:
-        lines.append(row("at the start", *_listed(begun)))
+        lines.append(row("at the start", *listed(begun)))
     for where in observer.unobservable:
         if where.condition.has(elapsed):  # long, and of no use by hand
             lines.append(row(f"no estimate while {where.reason}"))
@@ -77,7 +77,7 @@ def in_scalars(observer: Observer, zero: Sequence[sp.Symbol] = ()) -> list[str]:
     if equations.reset:
         changed = [(s, new) for s, new in zip(equations.state, equations.reset, strict=True) if s != new]
         after_it = [formula(after(s), new, letters) for s, new in changed]
-        lines.append(row("when", markup(equations.reset_condition, letters), "then", *_listed(after_it)))
+        lines.append(row("when", markup(equations.reset_condition, letters), "then", *listed(after_it)))
     return lines
 
 
@@ -98,16 +98,7 @@ def kalman_equations(x: Any, P: Any, F: Any, f: Any, c: Any, y: Any, Q: Any, R: 
 def cascade_equations(x: Any, P: Any, F: Any, f: Any, C: Any, y: Any, W: Any, Q: Any, R: Any) -> Matrices:
     """One filter of the linear approximation observer: innovation, gain K, flow."""
     K, e = sp.MatrixSymbol("K", x.shape[0], y.shape[0]), sp.MatrixSymbol("e", *y.shape)
-    return {
-        "e": y - C * x,
-        "K": P * C.T / R,
-        "x'": F * x + f + K * e,
-        "P'": F * P + P * F.T + Q * W - K * C * P,
-    }
-
-
-def _listed(formulas: list[str]) -> list[str]:
-    return [each for k, text in enumerate(formulas) for each in ([words(","), text] if k else [text])]
+    return {"e": y - C * x, "K": P * C.T / R, "x'": F * x + f + K * e, "P'": F * P + P * F.T + Q * W - K * C * P}
 
 
 def _kalman_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] = ()) -> list[str]:

@@ -29,6 +29,8 @@ from percept_obs.labs.shared.typed_motion import Blocks, read_motion
 from percept_obs.labs.shared.view import read_view
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record
 from percept_obs.system.surfaces import BehindCamera
+from percept_obs.system.view import DISTANCE
+from percept_obs.tracking.verdict import REMEDY, for_the_page
 from percept_obs.validation import checked, write_whole
 
 BUNDLE = FRONT / "lab.js"
@@ -45,8 +47,11 @@ ValueError
 TYPED = ("motion", "P", "P0")
 """The settings that are expressions of time."""
 
-MOST_WRITTEN = 50
-"""Largest number of motions over time that are kept for the page."""
+LEAVES = "the point leaves the half-space in front of the camera at once"
+"""What is wrong with a point that is seen in one sample only, also in the page."""
+
+OF_ONE_POINT = {**for_the_page(), "judged": DISTANCE, "remedy": REMEDY, "leaves": LEAVES}
+"""Sentences and numbers of verdicts for the pages of one point."""
 
 NOISES: dict[str, Any] = {"uniform": Uniform, "gaussian": Gaussian}
 
@@ -59,7 +64,7 @@ def record_while_seen(scenario: Scenario, camera: Camera, seed: int) -> Recordin
         times = camera.times(scenario.duration)
     count = int(np.argmin(scenario.in_front(times)))
     if count < 2:
-        raise BehindCamera("the point leaves the half-space in front of the camera at once; move it or turn the motion")
+        raise BehindCamera(f"{LEAVES}; move it or turn the motion")
     return record(scenario, times[count - 1], camera, seed)
 
 
@@ -175,16 +180,13 @@ class Lab(anywidget.AnyWidget):
         """Print the motions over time of settings for the page."""
         kept = settings.get("kept") or {}
         for text in (each.get(name, "") for each in (settings, kept) for name in TYPED):
-            if text.strip() and "source" not in self.written.get(text, {}):
-                self._write(text)
-
-    def _write(self, text: str) -> None:
-        try:
-            answer = self.typed_for_the_page(text)
-        except ValueError as error:
-            answer = {"refusal": str(error), "position": getattr(error, "position", None)}
-        kept = [item for item in self.written.items() if item[0] != text][1 - MOST_WRITTEN :]
-        self.written = dict([*kept, (text, answer)])
+            if not text.strip() or text in self.written:
+                continue
+            try:
+                answer = self.typed_for_the_page(text)
+            except ValueError as error:  # of a P that no kind of P uses now
+                answer = {"refusal": str(error)}
+            self.written = {**self.written, text: answer}
 
     def run(self) -> Any:
         """Runs of the present settings in Python, by the observers' names; of many points the run of all of them."""

@@ -1,7 +1,7 @@
 """Formulas as MathML whose letters carry the names of gains and settings."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from html import escape
 
 import sympy as sp
@@ -57,6 +57,11 @@ def after(symbol: sp.Basic) -> str:
 def row(*texts: str) -> str:
     """MathML of texts side by side; a text that is not MathML becomes words."""
     return f"<mrow>{''.join(text if text.startswith('<') else words(text) for text in texts)}</mrow>"
+
+
+def listed(formulas: Iterable[str]) -> list[str]:
+    """MathML of formulas with commas between them."""
+    return [part for k, text in enumerate(formulas) for part in ([words(","), text] if k else [text])]
 
 
 def words(text: str) -> str:

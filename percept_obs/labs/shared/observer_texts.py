@@ -1,4 +1,4 @@
-"""Texts of an observer that the page runs and shows: facts, gains, loop."""
+"""Texts of a point that the page moves, and of an observer that it runs and shows: facts, gains, loop."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,6 +11,16 @@ from percept_obs.labs.shared.printed import Texts
 from percept_obs.observers import Gain, Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
 from percept_obs.observers.parts import first_seen, hats
+from percept_obs.recording.simulation import point_in_motion
+from percept_obs.system.motion import Motion
+
+
+def point_for_the_page(motion: Motion) -> Texts:
+    """How a point moves: the numbers of A and b, and the loop that moves it."""
+    return {
+        "rates": function_source(motion.parameters, tuple(motion.A.row_join(motion.b))),
+        "plant": source(point_in_motion(motion.A, motion.b, motion.parameters), "javascript"),
+    }
 
 
 def observer_for_the_page(ways: Mapping[str, Observer], equations: Mapping[str, Any]) -> Texts:

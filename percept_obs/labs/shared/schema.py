@@ -18,6 +18,9 @@ from percept_obs.observers import Observer
 
 Settings = dict[str, Any]
 
+UNREAD = ("opening", "about", "reason", "partial", "longest", "observer")
+"""What Python knows of a kind, and the page does not read of it."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
@@ -42,9 +45,10 @@ class Kind:
         return self._read(name, value)
 
     def for_the_page(self) -> Settings:
-        """Plain data: the kind's name, and its fields that say something."""
-        plain = {field.name: _plain(getattr(self, field.name)) for field in fields(self) if field.repr}
-        return {"kind": type(self).__name__.lower(), **{k: v for k, v in plain.items() if v is not None and v != ""}}
+        """Plain data: the kind's name, and what the page reads of its fields that say something."""
+        plain = {field.name: _plain(getattr(self, field.name)) for field in fields(self) if field.name not in UNREAD}
+        said = {name: value for name, value in plain.items() if not (value is None or value is False or value == "")}
+        return {"kind": type(self).__name__.lower(), **said}
 
     def _expected(self) -> str:
         raise NotImplementedError
@@ -66,18 +70,19 @@ class Number(Kind):
     usual: tuple[float, float] | None = None  # the part of the range that a slider has
     step: float | None = None  # a slider's; it is logarithmic without one
     whole: bool = False
-    zero: bool = True  # whether 0 is allowed
+    nonzero: bool = False
     reason: str = ""  # for a bound, in the error message
 
     def _expected(self) -> str:
         kind = "a whole number" if self.whole else "a number"
         bounds = [f"{bound:g}" if bound < 1e6 else str(bound) for bound in (self.low, self.high)]
-        return f"{kind} from {' to '.join(bounds)}{'' if self.zero else ', not 0'}{self.reason and f'; {self.reason}'}"
+        more = f"{', not 0' if self.nonzero else ''}{self.reason and f'; {self.reason}'}"
+        return f"{kind} from {' to '.join(bounds)}{more}"
 
     def _allows(self, value: Any) -> bool:
         kind: Any = Integral if self.whole else Real
         number = isinstance(value, kind) and not isinstance(value, bool)
-        return number and self.low <= value <= self.high and bool(self.zero or value)
+        return number and self.low <= value <= self.high and not (self.nonzero and value == 0)
 
     def _read(self, name: str, value: Any) -> float:
         return int(value) if self.whole else float(value) + 0.0  # no -0.0
@@ -235,7 +240,7 @@ class Entries(Kind):
 class GainsOf(Group):
     """Gains of an observer, which checks them; it is made only for gains other than its own."""
 
-    observer: Callable[[], Observer] = field(repr=False)
+    observer: Callable[[], Observer]
 
     def _read(self, name: str, value: Any) -> Settings:
         found = super()._read(name, value)

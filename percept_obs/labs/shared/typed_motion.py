@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -12,7 +12,7 @@ import sympy as sp
 
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import read
-from percept_obs.compile import Array, function_source, python_text, vectorised
+from percept_obs.compile import Array, Flags, function_source, python_text, vectorised
 from percept_obs.labs.shared.printed import Texts
 from percept_obs.labs.shared.schema import Text
 from percept_obs.system.breaks import breaks_of
@@ -65,13 +65,8 @@ class Typed:
         times = np.union1d(np.linspace(0, duration, INSTANTS), self.breaks(duration))
         with np.errstate(all="ignore"):
             found = self.rows(times, numbers(times))
-        bad = np.argwhere(~(np.abs(found) <= 1e6))
-        if len(bad):
-            row, column = bad[0]
-            raise ValueError(
-                f"motion: {self.symbols[column]} is {found[row, column]:.4g} at {times[row]:.4g} s; it must be a "
-                "number up to 1e6 at all times of the run"
-            )
+        names = [f"motion: {symbol}" for symbol in self.symbols]
+        refuse_values(names, times, found, np.abs(found) <= 1e6, "a number up to 1e6 at all times of the run")
 
     def for_the_page(self) -> Texts:
         """A function of (t, numbers) for the changed entries, their columns, the numbers used, those that are 0."""
@@ -84,6 +79,13 @@ class Typed:
         uses = [place for place, symbol in enumerate(self.symbols) if symbol in used]
         found = {"source": source, "columns": columns, "uses": uses, "zero": zero, "python": python}
         return found | {"breaks": self.breaks(LONGEST)}
+
+
+def refuse_values(names: Sequence[str], times: Array, found: Array, good: Flags, expected: str) -> None:
+    """Raise a ValueError for the first of the values at T times, shape (T, n), that is not good."""
+    for row, column in np.argwhere(~good)[:1]:
+        value = f"{found[row, column]:.4g} at {times[row]:.4g} s"
+        raise ValueError(f"{names[column]} is {value}; it must be {expected}")
 
 
 def read_motion(text: str, blocks: Blocks) -> Typed:

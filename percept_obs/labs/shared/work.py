@@ -9,6 +9,7 @@ import numpy as np
 from percept_obs.compile import Array, vectorised
 from percept_obs.labs.shared.samples import is_sampled, times_of
 from percept_obs.labs.shared.typed_motion import INSTANTS
+from percept_obs.recording.camera import TOO_SHORT
 from percept_obs.system.motion import Motion
 
 MOST_WORK = 300_000
@@ -54,7 +55,7 @@ def solver_calls(known: Callable[[Array], Array] | None, duration: float, fastes
 def too_much(work: float, duration: float = np.inf, period: float = 0.0) -> str:
     """Reason why Python does not compute a run; empty if it does."""
     if duration < period:
-        return f"A duration of {duration:g} s holds no two samples {period:g} s apart."
+        return TOO_SHORT.format(duration=f"{duration:g}", period=f"{period:g}")
     slower = "slow it down, lengthen the period or shorten the duration"
     return f"Python says nothing on so fast or long a motion; {slower}." if work > MOST_WORK else ""
 

@@ -13,7 +13,7 @@ import numpy as np
 from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.common_settings import gains, offering, own_gains
-from percept_obs.labs.shared.lab import NOISES, Lab, record_while_seen, refuse_observers
+from percept_obs.labs.shared.lab import NOISES, OF_ONE_POINT, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import samples_for_the_page
@@ -38,10 +38,9 @@ from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera, pinhole
-from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.following import TOO_LONG, StepTooLong, track
 from percept_obs.tracking.run import Run
-from percept_obs.tracking.verdict import REMEDY, SETTLED_PART, for_the_page
+from percept_obs.tracking.verdict import SETTLED_PART
 from percept_obs.validation import TooMuchWork
 
 MOST_STEPS = 200_000
@@ -122,9 +121,7 @@ class StructureLab(Lab):
             own={name: make.for_the_page() for name, make in self._user_observers.items()},
             samples=self._samples and {**samples_for_the_page(self._samples), "zero": zero_in(self._samples)},
             drive=DRIVE,
-            **for_the_page(),
-            judged=DISTANCE,
-            remedy=REMEDY,
+            **OF_ONE_POINT,
             tooLong=TOO_LONG,
             largestStepRate=LARGEST_STEP_RATE,
             mostSteps=MOST_STEPS,

@@ -57,9 +57,7 @@ SCHEMA = Schema(
     v_p_swing=vector(_OBJECT, "how far the object's does", **_SWING),
     w_c=vector(("w_c1", "w_c2", "w_c3"), "angular velocity of the camera", "rad/s", usual=(-0.5, 0.5), step=0.01),
     velocities=replace(
-        VELOCITIES,
-        names=("set",),
-        reason='there is "samples" too where the lab is opened with rigid(..., times=times)',
+        VELOCITIES, names=("set",), reason='there is "samples" too where the lab is opened with rigid(..., times=times)'
     ),
     motion=typed_setting("v_c1 = 0.2 cos(t)^3; w_c3 = 0.1 sin(2t)"),
     rate=Number(1.0, 0, 10, (0, 1), 0.01, unit="rad/s", label="at a rate of", about="how fast velocities swing"),

@@ -13,14 +13,13 @@ from typing import Any
 import sympy as sp
 
 from percept_obs import observers
-from percept_obs.compile import function_source, source
+from percept_obs.compile import function_source
 from percept_obs.labs.shared.equations import equations_of
 from percept_obs.labs.shared.markup import formula, markup
-from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page
+from percept_obs.labs.shared.observer_texts import kernel_for_the_page, observer_for_the_page, point_for_the_page
 from percept_obs.labs.shared.printed import Parts, Texts
 from percept_obs.observers import Observer, integral_sliding_mode
 from percept_obs.observers.integral_sliding_mode import IDEAL
-from percept_obs.recording.simulation import point_in_motion
 from percept_obs.structure import COROLLARIES, QUANTITIES, ImpossibleChoice, StructureAndMotion, scaled_dynamics
 from percept_obs.structure.scenarios import chwa2019_experiment
 from percept_obs.system.forms import CanonicalForm, partition
@@ -91,8 +90,7 @@ def model_for_the_page() -> Texts:
     """Texts that depend on no choice: the point's loop, the pinhole, the observers, the refused choices."""
     surface = pinhole()
     return {
-        "rates": function_source(MOTION.parameters, tuple(MOTION.A.row_join(MOTION.b))),
-        "plant": source(point_in_motion(MOTION.A, MOTION.b, MOTION.parameters), "javascript"),
+        **point_for_the_page(MOTION),
         "project": function_source(POINT, (*surface.image, surface.distance)),
         "swinging": function_source(SWING, (swinging(*SWING),)),
         "phases": {name: [float(phase) for phase in phases] for name, phases in PHASES.items()},

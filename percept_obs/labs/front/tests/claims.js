@@ -154,7 +154,7 @@ export const OBSERVER = [
     },
   ],
   [
-    /^The estimate left every bound after/,
+    /^Diverged at .* s: the estimate grew beyond all bounds\.$/,
     ({ shown, now }) => Number.isNaN(valueAt(shown, shown.runs[0].estimate, 3, 2, now)),
   ],
 ];
@@ -244,7 +244,7 @@ export const POINTS = [
   ],
   [/^The camera travels, so the rays turn/, (told) => !stands(told)],
   [/^The rays turn and pull anew/, stands],
-  [/^The estimate left every bound after/, ({ shown: { divergedAt }, now }) => divergedAt <= now],
+  [/^Diverged at .* s: the estimate grew beyond all bounds\.$/, ({ shown: { divergedAt }, now }) => divergedAt <= now],
 ];
 
 // Structure and motion: distances are 1 / (d_s ybar3), speeds those of the camera against the car.
@@ -339,6 +339,6 @@ export const STRUCTURE = [
   ],
   [/^The size is known, so the film tells a speed/, (told) => sizeKnown(told) && !refused(told)],
   [/^Each world needs another speed\./, (told) => !sizeKnown(told) && Math.hypot(...knownSpeed(told)) > 0],
-  [/^The estimate left every bound after/, (told) => Number.isNaN(ratioAt(told, told.at.sample))],
+  [/^Diverged at .* s: the estimate grew beyond all bounds\.$/, (told) => Number.isNaN(ratioAt(told, told.at.sample))],
 ];
 

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { schemaAt, schemaOf } from "../src/state/schema.js";
 import { test } from "node:test";
-import { columnOf, distancesOf } from "../src/engine/derived.js";
+import { columnOf } from "../src/engine/derived.js";
 import { changeAt, same, valueAt } from "../src/state/settings.js";
 import { settlingTime } from "../src/engine/errors.js";
 import { PrintedKernels } from "../src/engine/kernels.js";
@@ -160,9 +160,7 @@ test("a value in the settings is read and changed by its place, and nothing else
 
 test("what follows from a result's rows is made once for them", () => {
   const rows = Float64Array.of(1, 0.5, 2, -1);
-  const distances = distancesOf(rows, 2);
-  assert.deepEqual([...distances], [2, NaN]);
-  assert.equal(distancesOf(rows, 2), distances);
+  assert.deepEqual([...columnOf(rows, 2, 1)], [0.5, -1]);
   assert.equal(columnOf(rows, 2, 1), columnOf(rows, 2, 1));
 });
 
@@ -170,7 +168,7 @@ test("a schema takes ranges from Python and words from the page", () => {
   const told = {
     size: { kind: "number", low: 0, high: 9, usual: [1, 2], step: 0.5, unit: "m" },
     hold: { kind: "choice", names: ["zero", "first"] },
-    b: { kind: "row", entries: [{ kind: "number", low: -5, high: 5, label: "b1", zero: false }] },
+    b: { kind: "row", entries: [{ kind: "number", low: -5, high: 5, label: "b1", nonzero: true }] },
     start: { kind: "optional", of: { kind: "group", of: { mode: { kind: "choice", names: ["own"] } } } },
   };
   const words = {

@@ -1,9 +1,9 @@
 // What charts are put together from: lines of the runs, of the truth and of the kept run, and scales around them.
 
 import { indicesIn } from "../engine/tables.js";
-import { columnOf } from "../engine/derived.js";
+import { columnOf, derived } from "../engine/derived.js";
 import { KEPT } from "./looks.js";
-import { linearScale, logScale, readable, spread } from "./scales.js";
+import { linearScale, logScale, readable, short, spread } from "./scales.js";
 
 /** From this ratio on, the beginning of a distance cannot be read on a scale that shows its end. */
 const MANY = 50;
@@ -102,6 +102,16 @@ export function chartInWords(/** @type {import("./chart.js").Chart} */ { title, 
   });
   return `${title ? `${title}. ` : ""}${parts.join("; ")}.`;
 }
+
+export const inPercent = (values) => derived(values, "percent", () => values.map((value) => 100 * value));
+
+/** The level of a tolerance in a chart of errors in per cent. */
+export function levelOf(tolerance) {
+  return { value: 100 * tolerance, text: `tolerance ${short(100 * tolerance, 6)} %` };
+}
+
+/** A line of one of several outputs. */
+export const called = (line, name) => ({ ...line, text: line.text && `${name} ${line.text}` });
 
 /** When observers were reset, in their colours. */
 export function resetsOf({ shown: { runs }, theme }) {

@@ -3,9 +3,9 @@
 /** Lines in a direction at most, whatever the numbers are. */
 const MOST_LINES = 500;
 
-/** A line for each decimetre or metre, or for more where these would be too near; the list is the middle and scale. */
-export function drawGround(view, [cx, cz, scale], { x, y }, theme) {
-  const { width, height } = view;
+/** A line for each decimetre or metre, or for more where these would be too near. */
+export function drawGround(view, { x, y }, theme) {
+  const { width, height, at: [cx, cz, scale] } = view;
   const step = [0.1, 1, 5, 10, 50, 100, 1000].find((m) => m * scale >= 9) ?? 10 ** Math.ceil(Math.log10(9 / scale));
   const about = (/** @type {number} */ middle, /** @type {number} */ reach) => {
     const first = Math.ceil((middle - reach) / step);

@@ -17,7 +17,7 @@ export function arrowMark(pen, from, to, { colour, dash, width, head }) {
 }
 
 /** A straight line in the pen's present style. */
-export function stroke(pen, from, to) {
+function stroke(pen, from, to) {
   pen.beginPath();
   pen.moveTo(from[0], from[1]);
   pen.lineTo(to[0], to[1]);

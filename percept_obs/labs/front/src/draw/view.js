@@ -7,6 +7,8 @@ import { arrowMark, disc, ring } from "./marks.js";
 /** Milliseconds in which a view comes most of the way to where it should be. */
 const GLIDE = 90;
 const HATCH = 8;
+/** Pixels between arrows of copies. */
+const ASIDE = 11;
 
 export class View extends LabelledPicture {
   /** @param {string} caption  that stands in a lower corner; nothing is drawn over it */
@@ -45,6 +47,26 @@ export class View extends LabelledPicture {
     return !near;
   }
 
+  /**
+   * Functions from the picture's world to its pixels, and the frame of its handles; its middle lies some pixels above
+   * that of the canvas, and upwards may be down.
+   */
+  mapped(raised = 0, up = 1) {
+    const { width, height } = this;
+    const [across, ahead, scale] = /** @type {number[]} */ (this.at);
+    const x = (value) => width / 2 + (value - across) * scale;
+    const y = (value) => height / 2 - raised - up * (value - ahead) * scale;
+    const frame = { box: { left: 8, top: 8, width: width - 16, height: height - 16 }, scale, x, y };
+    return { x, y, scale, frame };
+  }
+
+  /** Draw a small pale disc, from which no label keeps away. */
+  speck([x, y], radius, colour) {
+    this.context.globalAlpha = 0.7;
+    disc(this.context, x, y, radius, colour);
+    this.context.globalAlpha = 1;
+  }
+
   /** Draw a disc with a rim of the background's colour, over which no label stands. */
   dot(x, y, radius, colour, rim = 1.5) {
     disc(this.context, x, y, radius + rim, this.theme.raised);
@@ -63,6 +85,18 @@ export class View extends LabelledPicture {
     if (!(Math.hypot(dx, dy) > 3)) return;
     arrowMark(this.context, [x, y], [x + dx, y + dy], { colour, dash: [], width, head: 5 + 2.2 * width });
     for (let part = 0.25; part <= 1; part += 0.25) this.avoid(x + dx * part, y + dy * part, 5);
+  }
+
+  /** Draw how three copies of a thing at other distances move, side by side, each with its name. */
+  copies([x, y], ways, names) {
+    ways.forEach(([u, v], k) => {
+      const length = Math.hypot(u, v);
+      const aside = length > 3 ? ((k - 1) * ASIDE) / length : 0;
+      const from = [x - v * aside, y + u * aside];
+      this.arrow(from, [u, v], this.theme.ink, 2.5);
+      const tip = { at: [from[0] + u, from[1] + v], towards: [u, v], gap: 5 };
+      if (length > 8) this.tag({ id: names[k], text: names[k], ...tip, colour: this.theme.ink, rank: k });
+    });
   }
 
   /** Hatch the inside of a path: what cannot be seen there. */

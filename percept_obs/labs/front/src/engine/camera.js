@@ -3,6 +3,7 @@
 
 import { constantPath } from "./path.js";
 import { draws } from "./random.js";
+import { filled } from "../state/texts.js";
 import { column, plantGrid, sampleTimes } from "./tables.js";
 
 const NOTHING = new Float64Array(0);
@@ -72,13 +73,10 @@ export class PointCamera {
   see(settings, functions) {
     const { time, plant } = clockOf(this.memory, settings, this.kinks(settings));
     const count = time.length;
-    if (count < 2)
-      return nothing(
-        `a duration of ${settings.duration} s holds no two samples ${settings.period} s apart; record longer`,
-      );
+    if (count < 2) return nothing(filled(this.model.verdicts["too short"], settings));
     const truth = new Float64Array(3 * count);
     const inFront = this.look(settings, functions, plant, truth);
-    if (inFront === 1) return nothing("the point leaves the half-space in front of the camera at once");
+    if (inFront === 1) return nothing(this.model.leaves);
     if (!inFront) return nothing(`the point starts behind the camera: ${this.remedy}`);
     const leavesAt = inFront < count ? time[inFront] : null;
     return { time: time.subarray(0, inFront), truth: truth.subarray(0, 3 * inFront), leavesAt };

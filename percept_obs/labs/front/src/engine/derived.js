@@ -20,13 +20,3 @@ export function columnOf(rows, width, which) {
 export function sampledAt(samples, times) {
   return knownAt(derived(samples, "columns", () => withColumns(samples)), [], times);
 }
-
-/** Distances of rows whose last column is inverse: none where that is not positive. */
-export function distancesOf(rows, width) {
-  const inverse = columnOf(rows, width, width - 1);
-  return derived(rows, "distances", () => {
-    const distances = new Float64Array(inverse.length);
-    for (let k = 0; k < distances.length; k++) distances[k] = inverse[k] > 0 ? 1 / inverse[k] : NaN;
-    return distances;
-  });
-}

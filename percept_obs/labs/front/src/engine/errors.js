@@ -15,7 +15,7 @@ export function distanceError(right, found, estimate, width) {
 }
 
 /** Relative error of one estimate, whose coordinates begin at a place. */
-export function errorOfOne(right, found, estimate, begin, width) {
+function errorOfOne(right, found, estimate, begin, width) {
   let sum = 0;
   for (let at = begin; at < begin + width; at++) sum += estimate[at] - estimate[at];
   if (sum !== 0) return NaN;

@@ -118,14 +118,14 @@ export function evaluated(evaluate, columns, { rows, width, varying }, size, row
  * The state at the first sample, from it, from what is known there, from the estimates that are asked for, and from
  * whether those of the outputs are the sample itself.
  */
-export function startState({ columns, known: table, own }, kernel, functions, gains, asked) {
+function startState({ columns, known: table, own }, kernel, functions, gains, asked) {
   const parameters = table.rows.subarray(0, table.width);
   const [first, given] = [columns.map((values) => values[0]), columns.map(() => (own ? 1 : 0))];
   return functions.start([...first, ...parameters, ...gains, ...asked, ...given], new Float64Array(kernel.states));
 }
 
 /** A function that fills in what the estimate at a sample follows from: outputs, what is known, gains, the state. */
-export function argumentsAt({ index, last, known: table }, kernel, states, gains, x) {
+function argumentsAt({ index, last, known: table }, kernel, states, gains, x) {
   const before = last.length + table.width + gains.length;
   x.set(table.rows.subarray(0, table.width), last.length);
   x.set(gains, last.length + table.width);

@@ -156,11 +156,11 @@ function read(kind, text, name) {
       return text === NOTHING ? null : read(kind.of, text, name);
     case "number": {
       const value = NUMBER.test(text) ? Number(text) + 0 : NaN;
-      const { low, high, whole, zero } = kind;
-      const good = value >= low && value <= high && !(whole && !Number.isInteger(value)) && (zero !== false || value);
+      const { low, high, whole, nonzero } = kind;
+      const good = value >= low && value <= high && !(whole && !Number.isInteger(value)) && !(nonzero && value === 0);
       return good
         ? value
-        : refuse(`a ${whole ? "whole " : ""}number from ${low} to ${high}${zero === false ? ", not 0" : ""}`);
+        : refuse(`a ${whole ? "whole " : ""}number from ${low} to ${high}${nonzero ? ", not 0" : ""}`);
     }
     case "choice":
       return kind.names.includes(decoded(text)) ? decoded(text) : refuse(`one of ${kind.names.join(", ")}`);

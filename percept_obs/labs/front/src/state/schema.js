@@ -23,10 +23,10 @@ export function schemaAt(schema, place) {
 }
 
 const MAKE = {
-  number: ({ label, unit, low: least, high: most, usual, step, whole, zero, topic }, words, name) => {
+  number: ({ label, unit, low: least, high: most, usual, step, whole, nonzero, topic }, words, name) => {
     const [low, high] = usual ?? [least, most];
     const said = { label: label ?? name, unit, low, high, step, log: step === undefined && low > 0 };
-    return { kind: "number", ...said, least, most, whole, nonzero: zero === false, topic, ...words };
+    return { kind: "number", ...said, least, most, whole, nonzero, topic, ...words };
   },
   choice: ({ label, names }, words, name) => ({
     kind: "choice",

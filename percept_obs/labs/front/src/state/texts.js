@@ -17,6 +17,11 @@ export async function modelOf(texts, given) {
   return Object.assign(model, given);
 }
 
+/** A text with values in the places of their names. */
+export function filled(text, values) {
+  return text.replace(/{(\w+)}/g, (_, name) => values[name]);
+}
+
 /** A property that is made when it is first asked for. */
 function lazily(object, name, make) {
   const set = (value) => Object.defineProperty(object, name, { value, enumerable: true });

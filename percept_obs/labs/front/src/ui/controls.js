@@ -7,7 +7,7 @@ import { element, formula, setAttribute, setText } from "../draw/dom.js";
 let count = 0;
 
 /** Number a control of the page. */
-export function nextId() {
+function nextId() {
   return `percept-${++count}`;
 }
 

@@ -1,7 +1,6 @@
 // A lab: settings in, pictures and words out, once a frame and for the latest settings only.
 
 import { within } from "../engine/between.js";
-import { settled } from "../engine/errors.js";
 import { Latest } from "../engine/latest.js";
 import { Results } from "../engine/results.js";
 import { readOf } from "../engine/typed.js";
@@ -453,11 +452,5 @@ export class Lab extends LabBase {
   /** Python's answer, if it is about what is shown. */
   answered() {
     return this.answer?.settings === this.shown?.settings ? this.answer : null;
-  }
-
-  /** True if a run's error stays in the tolerance for long enough to be sure. */
-  isSettled({ settling }) {
-    const { time, settledPart } = this.shown;
-    return settled(settling, time.at(-1) - time[0], settledPart);
   }
 }

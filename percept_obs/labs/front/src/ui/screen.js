@@ -34,10 +34,11 @@ const SPOKEN_AFTER = 500;
  */
 
 /**
- * The screen of a lab.  A screen of its own draws `drawImage(scene)` and `drawWorld(scene)`, says what the chart
- * holds in `chartOf(scene)` and what is seen in `sentence(scene)`, and puts handles into the pictures.
+ * The screen of a lab.  A screen of its own puts handles into the pictures, and has methods of a scene, or `parts`,
+ * functions of the screen and a scene: `drawImage`, `drawWorld`, `chartOf`, what the chart holds, `sentence`.
  */
 export class Screen {
+  static parts = /** @type {any} */ ({});
   /** @type {Handle[]} */
   handles = [];
   why = false;
@@ -276,22 +277,23 @@ export class Screen {
   }
 
   /** @returns {boolean} true while the view is on its way */
-  drawImage(/** @type {Scene} */ _scene, _motion, _note) {
-    throw new Error("a lab draws its image");
+  drawImage(...given) {
+    return partsOf(this).drawImage(this, ...given);
   }
 
-  /** @returns {boolean} */
-  drawWorld(/** @type {Scene} */ _scene, _motion, _note) {
-    throw new Error("a lab draws its world");
+  drawWorld(...given) {
+    return partsOf(this).drawWorld(this, ...given);
   }
 
   /** @returns {import("../draw/chart.js").Chart} */
-  chartOf(/** @type {Scene} */ _scene) {
-    throw new Error("a lab says what its chart holds");
+  chartOf(scene) {
+    return partsOf(this).chartOf(this, scene);
   }
 
   /** @returns {string} */
-  sentence(/** @type {Scene} */ _scene) {
-    throw new Error("a lab says what is seen");
+  sentence(scene) {
+    return partsOf(this).sentence(this, scene);
   }
 }
+
+const partsOf = (screen) => screen.constructor.parts;

@@ -2,17 +2,14 @@
 
 import { settled } from "../engine/errors.js";
 import { readable, short } from "../draw/scales.js";
-
-export function filled(text, values) {
-  return text.replace(/{(\w+)}/g, (_, name) => values[name]);
-}
+import { filled } from "../state/texts.js";
 
 /** Verdict on one observer, as Run.verdict() in Python. */
 export function verdict(run, shown, model) {
-  const { verdicts, remedy } = model;
+  const { verdicts } = model;
   const say = (which, values) => filled(verdicts[which], values);
   const since = (time) => short(time - shown.time[0]);
-  if (run.divergedAt !== null) return say("diverged", { time: since(run.divergedAt), remedy });
+  if (run.divergedAt !== null) return divergedInWords(since(run.divergedAt), model);
   const count = run.resets.length;
   let besides = count ? say(count === 1 ? "reset once" : "reset often", { count, time: since(run.resets[0]) }) : "";
   for (const which of new Set(run.gaps.map((gap) => gap[2]))) {
@@ -25,6 +22,10 @@ export function verdict(run, shown, model) {
   if (!shown.truth) return say("followed", { time: short(length) }) + besides;
   const judged = { judged: shown.judged, error: run.error.at(-1), tolerance: shown.tolerance };
   return settledInWords(judged, run.settling, length, model) + besides;
+}
+
+export function divergedInWords(time, { verdicts, remedy }) {
+  return `${filled(verdicts.diverged, { time })}${verdicts.grew}; ${remedy}`;
 }
 
 /** Verdict on a relative error, with its last value; `settling` is infinite where it ends outside. */

@@ -11,13 +11,12 @@ const OF_MODULES = /export\s*\{[^{}]*\};?\s*$|\bimport\.meta\.url\b/g;
  * @param {(ask: (task: any) => void) => void} on.ready  is given the function that sends a task
  * @param {(answer: any) => void} on.answer
  * @param {() => void} [on.gone]  the page's content policy forbids workers, or the browser knows none of modules
- * @param {string} [name]  "maps", or the lab's results
  */
-export function openWorker(widget, { ready, answer, gone = () => {} }, name = "results") {
+export function openWorker(widget, { ready, answer, gone = () => {} }) {
   const [bundle, kind, texts, model] = ["_esm", "kind", "texts", "model"].map((trait) => widget.get(trait));
   const script = bundle?.replace(OF_MODULES, '""');
   const address = script ? URL.createObjectURL(new Blob([script], { type: "text/javascript" })) : import.meta.url;
-  const worker = new Worker(address, { name, type: script ? "classic" : "module" });
+  const worker = new Worker(address, { name: "results", type: script ? "classic" : "module" });
   worker.onerror = (event) => {
     event.preventDefault();
     worker.terminate();

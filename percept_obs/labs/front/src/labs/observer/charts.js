@@ -1,10 +1,11 @@
 // The charts of the observer lab besides that of the distance: lines, scale, and what is marked.
 
 import { columnOf, derived } from "../../engine/derived.js";
-import { around, coordinateLines, decades, keptLine, linesOf, resetsOf } from "../../draw/lines.js";
+import {
+  around, called, coordinateLines, decades, inPercent, keptLine, levelOf, linesOf, resetsOf,
+} from "../../draw/lines.js";
 import { BOUND } from "../../draw/looks.js";
 import { readable } from "../../draw/scales.js";
-import { percent } from "../../ui/words.js";
 
 /** Titles of the charts, by their names. */
 export const CHARTS = {
@@ -21,11 +22,6 @@ const innovationOf = ({ outputs, sampled, width }, { estimate }, c) => {
   return derived(estimate, `innovation ${c}`, () => seen.map((value, k) => value - expected[k]));
 };
 
-const inPercent = (values) => derived(values, "percent", () => values.map((value) => 100 * value));
-
-/** A line of one of several outputs. */
-const called = (line, name) => ({ ...line, text: line.text && `${name} ${line.text}` });
-
 const BUILD = {
   error(scene, span) {
     const { shown, theme } = scene;
@@ -34,7 +30,7 @@ const BUILD = {
       const look = { colour: theme.warning, width: 2, dash: BOUND };
       lines.push({ id: "bound", text: "bound", time: shown.time, values: inPercent(shown.bound), ...look });
     }
-    const level = { value: 100 * shown.tolerance, text: `tolerance ${percent(shown.tolerance, 6)}` };
+    const level = levelOf(shown.tolerance);
     const { low, high } = decades(lines, span, 0.1, 100, level.value);
     return { lines, unit: "%", level, scale: { low: Math.min(low, 0.1), high: Math.max(high, 100), log: true } };
   },

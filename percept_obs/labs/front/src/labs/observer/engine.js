@@ -17,7 +17,7 @@ const INFINITY = 1e6;
 const NEARLY = 1e-9;
 const NONE = new Float64Array(0);
 /** What settings have whose translation points nowhere in the image. */
-export const NOWHERE = { foe: null, foeTowards: null, circle: null };
+const NOWHERE = { foe: null, foeTowards: null, circle: null };
 
 export class Engine extends Runner {
   constructor(model) {
@@ -129,7 +129,7 @@ function parametersOf(settings) {
 }
 
 /** The focus of expansion in the image; null where it is at infinity, or the motion varies. */
-export function focusOf(settings, functions, model) {
+function focusOf(settings, functions, model) {
   if (varies(settings, model)) return null;
   return inImage(functions, parametersOf(settings));
 }
@@ -138,7 +138,7 @@ export function focusOf(settings, functions, model) {
  * Where the translation of a motion's numbers points in the image; null where that is at infinity, or nothing
  * translates.
  */
-export function inImage(functions, numbers) {
+function inImage(functions, numbers) {
   const foe = Array.from(functions.foe(numbers, [0, 0]));
   return foe.every((v) => Math.abs(v) < INFINITY) ? foe : null;
 }

@@ -23,9 +23,7 @@ export function drawImage(screen, scene, motion, note) {
   const moving = view.glide(imageGoal(screen, scene, seen), motion);
   view.begin(theme);
   const { width, height } = view;
-  const [c1, c2, scale] = /** @type {number[]} */ (view.at);
-  const x = (y1) => width / 2 + (y1 - c1) * scale;
-  const y = (y2) => height / 2 - seen.up * (y2 - c2) * scale;
+  const { x, y, scale, frame } = view.mapped(0, seen.up);
   const on = (place) => /** @type {[number, number]} */ ([x(place[0]), y(place[1])]);
   view.avoid(width - 44, height - 27, 44, 27);
   view.plated = view.figure.classList.toggle("filmed", Boolean(seen.film));
@@ -63,7 +61,6 @@ export function drawImage(screen, scene, motion, note) {
   if (seen.film && !why) drawDistances(view, scene, seen, [px, py], colour);
   if (note) view.note(...(note.at === "estimate" ? [gx, gy + 13] : [px, py + 8]), note.text);
   view.end();
-  const frame = { box: { left: 8, top: 8, width: width - 16, height: height - 16 }, scale, x, y };
   const { late } = screen.lab;
   screen.focus.stand(seen.movable ? foe : null, frame, late);
   screen.point.stand(seen.movable ? seen.y : null, frame, late);
@@ -150,12 +147,7 @@ function drawStandingThings(screen, view, scene, { motion, image }, on) {
     const part = Math.min(1, 50 / length);
     const from = at.map((value, c) => value + part * (before[c] - value));
     view.line([from, at], theme.muted, { alpha: 0.4 });
-    view.context.globalAlpha = 0.7;
-    view.context.fillStyle = theme.muted;
-    view.context.beginPath();
-    view.context.arc(at[0], at[1], 3, 0, 7);
-    view.context.fill();
-    view.context.globalAlpha = 1;
+    view.speck(at, 3, theme.muted);
   }
 }
 
@@ -184,18 +176,9 @@ function drawArrows(view, { theme, why, shown: { tolerance } }, seen, at) {
   size = Math.max(size, Math.min(most, LEAST / longer));
   const tip = (/** @type {number[]} */ [u, v]) => [size * u, size * v];
   if (why) {
-    shown.forEach((velocity, k) => {
-      const [u, v] = tip(velocity);
-      const length = Math.hypot(u, v);
-      const aside = length > 3 ? ((k - 1) * 11) / length : 0;
-      const from = [px - v * aside, py + u * aside];
-      view.arrow(from, [u, v], theme.ink, 2.5);
-      const end = [from[0] + u, from[1] + v];
-      const text = HERE[k];
-      if (length <= 8 && k === 1)
-        view.tag({ id: "still", text: "no motion at any distance", at: from, colour: theme.ink, rank: 0, gap: 16 });
-      if (length > 8) view.tag({ id: text, text, at: end, colour: theme.ink, rank: k, gap: 5, towards: velocity });
-    });
+    view.copies(at, shown.map(tip), HERE);
+    if (Math.hypot(...tip(shown[1])) <= 8)
+      view.tag({ id: "still", text: "no motion at any distance", at, colour: theme.ink, rank: 0, gap: 16 });
     return;
   }
   const colour = theme.lines[run.order];

@@ -41,7 +41,6 @@ const BALL = { X0: [1.2, -0.3, 7.5], gains: { [OBSERVER]: { gain: 20 } } };
 const HIDDEN = { A: [[0, 1, 0], [0, 0, 0], [0, 0, 0]], b: [1, 0, 0], X0: [-1, 0.4, 4], guess: 2 };
 
 const errorsOf = (result) => result.runs[0].error;
-const lastOf = (values) => values[values.length - 1];
 const settles = (result) => Number.isFinite(result.runs[0].settling);
 
 /** Errors at the samples in which the point is too near the focus of expansion. */
@@ -154,7 +153,7 @@ export const QUESTIONS = [
     },
     holds: ({ shown, ghost }) => {
       const [right, wrong] = [errorsInside(shown), errorsInside(ghost)];
-      return right.length > 0 && Math.max(...right) < 0.05 && lastOf(wrong) >= wrong[0] && wrong[0] > 0.2;
+      return right.length > 0 && Math.max(...right) < 0.05 && wrong.at(-1) >= wrong[0] && wrong[0] > 0.2;
     },
   },
   {
@@ -176,7 +175,7 @@ export const QUESTIONS = [
     note: "1.5 times too far",
     spot: ({ shown }) => ({ time: shown.time[sampleAt(shown, 0.8)], own: sampleAt(shown, 0.8) }),
     holds: ({ shown, ghost }) => {
-      const ratio = lastOf(shown.truth) / lastOf(shown.runs[0].estimate);
+      const ratio = shown.truth.at(-1) / shown.runs[0].estimate.at(-1);
       return Math.abs(ratio - BELIEVED) < 0.05 && settles(ghost);
     },
   },

@@ -28,6 +28,7 @@ const NEAR = 24;
 const [NEAREST, FARTHEST] = [0.8, 200];
 
 export class ObserverScreen extends Screen {
+  static parts = { drawImage, drawWorld, chartOf, sentence };
   /** True once a distance was hardly seen from above. */
   steep = false;
   /** What is seen at the time that was drawn last, in metres before the camera. */
@@ -235,21 +236,9 @@ export class ObserverScreen extends Screen {
     return this.seen;
   }
 
-  drawImage(scene, motion, note) {
-    return drawImage(this, scene, motion, note);
-  }
-
-  drawWorld(scene, motion, note) {
+  drawWorld(...given) {
     this.showSide(this.seen);
-    return drawWorld(this, scene, motion, note);
-  }
-
-  chartOf(scene) {
-    return chartOf(this, scene);
-  }
-
-  sentence(scene) {
-    return sentence(this, scene);
+    return super.drawWorld(...given);
   }
 }
 

@@ -3,13 +3,15 @@
 import { columnOf, derived } from "../../engine/derived.js";
 import { settled, settlingTime } from "../../engine/errors.js";
 import { same } from "../../state/settings.js";
+import { atEnd, DIVERGED, isEarly, notFound } from "../../ui/sentences.js";
 import { percent } from "../../ui/words.js";
 import { shapeOf } from "./camera.js";
 
 /** Image coordinates of more than this are not looked at. */
 export const MOST = 3;
 /** The estimate and the truth are written in metres up to this, and in centimetres below that. */
-export const [FAR, NEARBY] = [999, 2];
+export const FAR = 999;
+const NEARBY = 2;
 /** Part of the run in which the first look is told, and the last one, in which an estimate has to be steady. */
 const [EARLY, LAST] = [0.15, 0.25];
 /** A velocity in the image below which nothing moves. */
@@ -98,11 +100,9 @@ export function isOut({ y, film }) {
 }
 
 const lengthOf = (place) => (place ? Math.hypot(...place) : Infinity);
-const atEnd = ({ now, end }) => now >= end;
 const ratioOf = ({ guess, place }) => lengthOf(guess) / lengthOf(place);
 const isFound = ({ course, now, shown: { time } }) => course.found <= now - time[0];
 const bothOf = ({ guess, place }) => `at ${metres(lengthOf(guess))}, the point at ${metres(lengthOf(place))}`;
-const notFound = ({ end, shown: { time } }) => `Not found in ${(end - time[0]).toFixed(0)} s`;
 const within = ({ shown: { tolerance } }) => `within ${percent(tolerance, 6)}`;
 
 function believesAnother({ shown: { settings, time }, now, end }) {
@@ -114,7 +114,7 @@ function believesAnother({ shown: { settings, time }, now, end }) {
  * What may be said, the most important first.  Facts are what is seen at a time, with `shown`, `now`, `end`, `why`,
  * `moved`, `course` for a run with a truth, and `unseen` where too little is learnt.
  *
- * @type {{when: (facts: any) => any, text: (facts: any) => string}[]}
+ * @type {import("../../ui/sentences.js").Sentence[]}
  */
 export const SENTENCES = [
   {
@@ -124,10 +124,7 @@ export const SENTENCES = [
   { when: ({ truth }) => !truth, text: () => "A recording without a truth: the estimate alone is shown." },
   { when: ({ why, unseen }) => why && unseen, text: () => "One ray, three distances: here all of them move alike." },
   { when: ({ why }) => why, text: () => "One ray, three distances: the nearer a point is, the faster it moves." },
-  {
-    when: ({ run, now }) => run.divergedAt !== null && run.divergedAt <= now,
-    text: ({ run }) => `The estimate left every bound after ${run.divergedAt.toFixed(1)} s.`,
-  },
+  DIVERGED,
   { when: isOut, text: (facts) => `The point has left the picture. The estimate is ${bothOf(facts)}.` },
   {
     when: believesAnother,
@@ -144,7 +141,7 @@ export const SENTENCES = [
   },
   { when: isFound, text: (facts) => `Found ${within(facts)}: the estimate is ${bothOf(facts)}.` },
   {
-    when: ({ now, end, shown: { time } }) => now - time[0] < EARLY * (end - time[0]),
+    when: (facts) => isEarly(facts, EARLY),
     text: () => "One image shows the direction of a point, never its distance.",
   },
   {
@@ -176,8 +173,3 @@ export const SENTENCES = [
   },
   { when: () => true, text: (facts) => `By now it is seen nearly as expected: the estimate is ${bothOf(facts)}.` },
 ];
-
-/** What is said of some facts. */
-export function sentenceOf(facts) {
-  return /** @type {any} */ (SENTENCES.find(({ when }) => when(facts))).text(facts);
-}

@@ -1,10 +1,9 @@
 // Glossary of the observer lab; letters as MathML.
 
-const letter = (name, index = "") =>
-  `<math>${index ? `<msub><mi>${name}</mi><mn>${index}</mn></msub>` : `<mi>${name}</mi>`}</math>`;
+import { HOLD, IMAGE, INNOVATION, letter } from "../../ui/symbols.js";
 
 export const SYMBOLS = [
-  [`${letter("y", "1")}, ${letter("y", "2")}`, "where the camera sees the point: image coordinates, in focal lengths"],
+  IMAGE,
   [letter("y", "3"), "the inverse of the distance, in 1/m: what is sought"],
   ["<math><mover><mi>y</mi><mo>^</mo></mover></math>", "an estimate; the observer's y"],
   [`${letter("A")}, ${letter("b")}`, "the motion of the point against the camera: X' = A X + b"],
@@ -23,7 +22,7 @@ export const SYMBOLS = [
     "in every window of time the image moves enough to tell what is hidden: the smallest eigenvalue of the integral " +
     "of w wᵀ stays above 0",
   ],
-  ["innovation", "what is measured less what the observer expects"],
+  INNOVATION,
   ["injection", "the innovation, put back into the equations with a weight"],
   ["gain", "how strongly the innovation corrects the estimate"],
   [
@@ -31,5 +30,5 @@ export const SYMBOLS = [
     "the Cramer-Rao bound: the least root mean square error that the noise of the samples leaves to any unbiased " +
     "observer, which is one that is right on average",
   ],
-  ["hold", "what the observer takes for the outputs between two samples"],
+  HOLD,
 ];

@@ -3,14 +3,15 @@
 import { linesOf } from "../../draw/lines.js";
 import { places, range, select } from "../../ui/controls.js";
 import { derived } from "../../engine/derived.js";
-import { indicesIn } from "../../engine/tables.js";
+import { indicesIn, spansOf } from "../../engine/tables.js";
 import { between } from "../../engine/between.js";
 import { element } from "../../draw/dom.js";
 import { readable } from "../../draw/scales.js";
 import { changeAt, same, valueAt } from "../../state/settings.js";
 import { claimedDistances } from "../../engine/errors.js";
 import { percent } from "../../ui/words.js";
-import { courseOf, distancesOf, FAR, metres, sentenceOf } from "./sentences.js";
+import { firstOf } from "../../ui/sentences.js";
+import { courseOf, distancesOf, FAR, metres, SENTENCES } from "./sentences.js";
 
 export { metres };
 
@@ -51,22 +52,23 @@ export function chartOf(screen, scene) {
 }
 
 /** Times in which what is measured moves too little with the distance. */
-export function unseenSpans(shown) {
+function unseenSpans(shown) {
   return derived(shown, "unseen", () => {
     const { time, truth, foe, measured } = shown;
     const radius = radiusOf(shown);
     if (!truth?.length || !foe || !radius) return [];
     const text = `${measured.length > 1 ? "" : measured[0] ? "row " : "column "}too near the focus`;
-    const spans = spansOf(time, (k) => measuredApart(truth, k, foe, measured, shown.radius) < radius);
-    return spans.map(([begin, end]) => ({ begin, end, text }));
+    const spans = spansOf(time.length, (k) => measuredApart(truth, k, foe, measured, shown.radius) < radius);
+    return spans.map(({ first, last }) => ({ begin: time[first], end: time[last], text }));
   });
 }
 
 export function sentence(screen, scene) {
   const { shown, now, chosen } = scene;
-  const { seen, moved, lab: { kernels } } = screen;
+  const { seen, moved, lab: { kernels, model: { verdicts } } } = screen;
   const unseen = unseenSpans(shown).some(({ begin, end }) => begin <= now && now <= end);
-  return sentenceOf({ ...scene, ...seen, moved, unseen, course: seen.truth && courseOf(kernels, shown, chosen) });
+  const course = seen.truth && courseOf(kernels, shown, chosen);
+  return firstOf(SENTENCES, { ...scene, ...seen, verdicts, moved, unseen, course });
 }
 
 export function controlsOf(lab) {
@@ -144,17 +146,6 @@ function measuredApart(truth, k, foe, measured, radius) {
   let square = (radius * truth[3 * k + 2]) ** 2;
   for (const c of measured) square += (truth[3 * k + c] - foe[c]) ** 2;
   return Math.sqrt(square);
-}
-
-/** First and last time of each part in which a condition holds. */
-function spansOf(time, holds) {
-  const found = [];
-  for (let k = 0; k < time.length; k++) {
-    if (!holds(k)) continue;
-    if (k > 0 && holds(k - 1)) found.at(-1)[1] = time[k];
-    else found.push([time[k], time[k]]);
-  }
-  return found;
 }
 
 /** The distance of an inverse along a ray, with the interval of two deviations that is claimed, if one is. */

@@ -1,5 +1,6 @@
 // The world from above, it stands still, and the camera drives; the estimate is a bead on the ray.
 
+import { Box } from "../../draw/box.js";
 import { drawCamera, drawCone, drawGround } from "../../draw/map.js";
 import { indicesIn } from "../../engine/tables.js";
 import { between, valueBetween, within } from "../../engine/between.js";
@@ -22,12 +23,10 @@ export function drawWorld(screen, scene, motion, note) {
   const moving = view.glide(worldGoal(screen, scene, seen), motion);
   view.begin(theme);
   const { width, height } = view;
-  const [cx, cz, scale] = /** @type {number[]} */ (view.at);
-  const x = (value) => width / 2 + (value - cx) * scale;
-  const y = (value) => height / 2 - 6 - (value - cz) * scale;
+  const { x, y, scale, frame } = view.mapped(6);
   const [across, ahead] = screen.axes;
   const on = (place) => [x(place[across]), y(place[ahead])];
-  drawGround(view, [cx, cz, scale], { x, y }, theme);
+  drawGround(view, { x, y }, theme);
   if (!screen.resetButton.hidden) view.avoid(width - 62, 27, 62, 27);
   const camera = on(seen.camera);
   const reach = (1.2 * Math.hypot(width, height)) / scale;
@@ -37,15 +36,7 @@ export function drawWorld(screen, scene, motion, note) {
   };
   drawSight(screen, view, camera, along, theme);
   if (seen.simulated) {
-    for (const thing of STANDING_THINGS) {
-      const [u, v] = on(thing);
-      view.context.globalAlpha = 0.7;
-      view.context.fillStyle = theme.muted;
-      view.context.beginPath();
-      view.context.arc(u, v, 2.5, 0, 7);
-      view.context.fill();
-      view.context.globalAlpha = 1;
-    }
+    for (const thing of STANDING_THINGS) view.speck(on(thing), 2.5, theme.muted);
   }
   const { b } = seen.motion;
   const goal = along(b.map((value) => (seen.toWorld ? -value : value)));
@@ -86,7 +77,6 @@ export function drawWorld(screen, scene, motion, note) {
   }
   if (note) view.note(point[0], point[1] + 8, note.text);
   view.end();
-  const frame = { box: { left: 8, top: 8, width: width - 16, height: height - 16 }, scale, x, y };
   screen.far.stand(seen.movable && seen.truth ? screen.axes.map((k) => seen.point[k]) : null, frame, screen.lab.late);
   return moving;
 }
@@ -133,13 +123,8 @@ function worldGoal(screen, scene, { toWorld, inWorld, place }) {
   const { settings, truth, time, width } = shown;
   const [from, to] = indicesIn(time, span);
   const placeOf = placesOf(screen.lab, shown);
-  const box = [Infinity, -Infinity, Infinity, -Infinity];
-  const take = (/** @type {number[]} */ place) => {
-    const [x, z] = screen.axes.map((k) => place[k]);
-    if (!Number.isFinite(x + z)) return;
-    [box[0], box[1]] = [Math.min(box[0], x), Math.max(box[1], x)];
-    [box[2], box[3]] = [Math.min(box[2], z), Math.max(box[3], z)];
-  };
+  const box = new Box();
+  const take = (/** @type {number[]} */ place) => box.take(screen.axes.map((k) => place[k]));
   const rows = truth?.length ? truth : chosen.estimate;
   for (let k = 0; k <= GOAL; k++) {
     const sample = Math.round(from + (k * (to - from)) / GOAL);
@@ -157,10 +142,10 @@ function worldGoal(screen, scene, { toWorld, inWorld, place }) {
     take(apply(toWorld(scene.end), began));
   }
   const size = screen.world.size ?? { width: 350, height: 300 };
-  const [wide, high] = [box[1] - box[0], box[3] - box[2]];
+  const [wide, high] = box.size;
   const upwards = Math.max(1.01 * high, 0.05 * wide);
   const scale = Math.min((size.width - 130) / (wide + 0.1 * high), (size.height - 90) / upwards);
-  return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, Math.max(scale, 1e-6)];
+  return [...box.middle, Math.max(scale, 1e-6)];
 }
 
 /** What the image holds. */

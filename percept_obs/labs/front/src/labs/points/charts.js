@@ -1,8 +1,7 @@
 // The charts of many points besides the first: lines, scale, bars where a point is not seen.
 
 import { columnOf, derived } from "../../engine/derived.js";
-import { decades, distancesAround, keptLine } from "../../draw/lines.js";
-import { percent } from "../../ui/words.js";
+import { decades, distancesAround, inPercent, keptLine, levelOf } from "../../draw/lines.js";
 
 /** Titles of the charts, by their names. */
 export const CHARTS = {
@@ -36,9 +35,9 @@ const BUILD = {
     const { time, relative, tolerance } = shown;
     const lines = relative.map((values, k) => ({
       ...{ id: `point ${k}`, text: `point ${k + 1}`, time, colour: theme.lines[k], secret },
-      values: derived(values, "percent", () => values.map((value) => 100 * value)),
+      values: inPercent(values),
     }));
-    const level = { value: 100 * tolerance, text: `tolerance ${percent(tolerance, 6)}` };
+    const level = levelOf(tolerance);
     return { lines, unit: "%", level, scale: decades(lines, span, 1e-6, 1e6, level.value) };
   },
   depth({ shown, theme, secret }, span) {

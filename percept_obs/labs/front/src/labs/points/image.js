@@ -1,5 +1,6 @@
 // What the camera sees, on the first screen: a body, and its estimate pulled on to the rays of the marks.
 
+import { Box } from "../../draw/box.js";
 import { derived } from "../../engine/derived.js";
 import { within } from "../../engine/between.js";
 import { imageVelocities } from "../../engine/velocities.js";
@@ -16,9 +17,7 @@ export function drawImage(screen, scene, motion, note) {
   const moving = view.glide(imageGoal(view, scene), motion);
   view.begin(theme);
   const { width, height } = view;
-  const [c1, c2, scale] = /** @type {number[]} */ (view.at);
-  const x = (y1) => width / 2 + (y1 - c1) * scale;
-  const y = (y2) => height / 2 - 8 - (y2 - c2) * scale;
+  const { x, y, frame } = view.mapped(8);
   const on = ([X, Y, Z]) => (Z > NEAREST ? [x(X / Z), y(Y / Z)] : [NaN, NaN]);
   view.avoid(width - 44, height - 27, 44, 27);
   const blue = theme.lines[0];
@@ -58,7 +57,6 @@ export function drawImage(screen, scene, motion, note) {
   }
   if (note) view.note(at[0][0], at[0][1] + 8, note.text);
   view.end();
-  const frame = { box: { left: 8, top: 8, width: width - 16, height: height - 16 }, scale, x, y };
   screen.marks.forEach((mark, k) => {
     const place = seen.places[k];
     const there = place && place[2] > NEAREST;
@@ -68,7 +66,7 @@ export function drawImage(screen, scene, motion, note) {
 }
 
 /** How the first mark moves in the image, and how it would if all were half or twice as far and as large. */
-function drawWhy(view, { shown, at, theme }, lab, from) {
+function drawWhy(view, { shown, at }, lab, from) {
   const { place, velocityAt } = motionAt(lab, shown, at)(0);
   const speeds = imageVelocities(place, velocityAt, ([X, Y, Z]) => [X / Z, Y / Z]).map(([u, v]) => [u, -v]);
   const longest = Math.max(...speeds.map((v) => Math.hypot(...v)), 1e-9);
@@ -78,28 +76,17 @@ function drawWhy(view, { shown, at, theme }, lab, from) {
     (v0 < 0 ? from[1] : view.height - from[1]) / (Math.abs(v0) + 1e-9),
   );
   const size = Math.min((0.4 * view.width) / longest, 0.8 * room);
-  speeds.forEach((velocity, k) => {
-    const [u, v] = velocity.map((value) => size * value);
-    const length = Math.hypot(u, v);
-    const aside = length > 3 ? ((k - 1) * 12) / length : 0;
-    const [x, y] = [from[0] - v * aside, from[1] + u * aside];
-    view.arrow([x, y], [u, v], theme.ink, 2.5);
-    const tip = { at: [x + u, y + v], towards: velocity };
-    if (length > 8) view.tag({ id: HERE[k], text: HERE[k], ...tip, colour: theme.ink, rank: k, gap: 5 });
-  });
+  view.copies(from, speeds.map((velocity) => velocity.map((value) => size * value)), HERE);
 }
 
 /** Middle and scale of the image in which the body and the first of the estimate lie. */
 function imageGoal(view, { shown }) {
   const box = derived(shown.estimate, "image box", () => {
-    const found = [Infinity, -Infinity, Infinity, -Infinity];
+    const found = new Box();
     const { time, points } = shown;
     const take = (images, sample) => {
       for (let k = 0; k < points; k++) {
-        const [y1, y2] = [0, 1].map((c) => within(images[2 * (sample * points + k) + c], -MOST, MOST));
-        if (Number.isNaN(y1 + y2)) continue;
-        [found[0], found[1]] = [Math.min(found[0], y1), Math.max(found[1], y1)];
-        [found[2], found[3]] = [Math.min(found[2], y2), Math.max(found[3], y2)];
+        found.take([0, 1].map((c) => within(images[2 * (sample * points + k) + c], -MOST, MOST)));
       }
     };
     for (let part = 0; part <= 1; part += 0.025) take(shown.images, Math.round(part * (time.length - 1)));
@@ -107,6 +94,6 @@ function imageGoal(view, { shown }) {
     return found;
   });
   const { width, height } = view.size ?? { width: 400, height: 300 };
-  const scale = Math.min((width - 70) / (box[1] - box[0] + 0.02), (height - 90) / (box[3] - box[2] + 0.02));
-  return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, scale];
+  const [wide, high] = box.size;
+  return [...box.middle, Math.min((width - 70) / (wide + 0.02), (height - 90) / (high + 0.02))];
 }

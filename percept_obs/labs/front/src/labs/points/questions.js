@@ -3,7 +3,6 @@
 import { settingsOf } from "../../state/settings.js";
 import { foundAfter, meanErrorOf } from "./sentences.js";
 
-const lastOf = (values) => values[values.length - 1];
 /** Seconds in which a mark is hidden. */
 const AWAY = [1, 6];
 const NEVER = [0, 120];
@@ -23,7 +22,7 @@ function offRays({ images, estimated }) {
 
 const sampleAt = ({ time }, when) => Math.max(0, time.findIndex((value) => value >= when));
 const isFound = (result) => Number.isFinite(foundAfter(result));
-const endOff = (result) => lastOf(meanErrorOf(result));
+const endOff = (result) => meanErrorOf(result).at(-1);
 
 /** True if an error gets smaller and smaller from one time to another, up to a hundredth of what it begins with. */
 function shrinks(error, from, to) {
@@ -71,7 +70,7 @@ export const QUESTIONS = [
     spot: () => ({ at: "copy" }),
     holds: ({ shown, body }) => {
       const { errors } = shown;
-      return lastOf(errors[0]) < 0.1 * errors[0][0] && lastOf(errors[2]) > 1 && body.unseen.length === 6;
+      return errors[0].at(-1) < 0.1 * errors[0][0] && errors[2].at(-1) > 1 && body.unseen.length === 6;
     },
   },
   {

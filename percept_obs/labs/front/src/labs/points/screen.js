@@ -1,10 +1,11 @@
 // The screen of the lab of many points: a body's estimate is pulled, mark by mark, on to the rays of the marks.
 
 import { Screen } from "../../ui/screen.js";
+import { firstOf } from "../../ui/sentences.js";
 import { within } from "../../engine/between.js";
 import { PointsEngine } from "./engine.js";
 import { QUESTIONS } from "./questions.js";
-import { PARTS, seenOf, sentenceOf } from "./sentences.js";
+import { PARTS, seenOf, SENTENCES } from "./sentences.js";
 import { drawImage } from "./image.js";
 import { chartOf, controlsOf } from "./told.js";
 import { drawWorld } from "./world.js";
@@ -18,6 +19,7 @@ const [LEAST_ERROR, MOST_ERROR] = [0.5, 4];
 const [SWING, SWINGS] = [0.45, 2600];
 
 export class PointsScreen extends Screen {
+  static parts = { drawImage, drawWorld, chartOf };
   /** Amounts of the directions that no picture shows, as a hand has dragged the copy. */
   amounts = /** @type {number[] | null} */ (null);
   looked = 0;
@@ -120,19 +122,7 @@ export class PointsScreen extends Screen {
   /** True once the copy of the first look was left behind. */
   left = false;
 
-  drawImage(scene, motion, note) {
-    return drawImage(this, scene, motion, note);
-  }
-
-  drawWorld(scene, motion, note) {
-    return drawWorld(this, scene, motion, note);
-  }
-
-  chartOf(scene) {
-    return chartOf(scene);
-  }
-
   sentence(scene) {
-    return sentenceOf({ ...scene, ...this.seen, moved: this.moved });
+    return firstOf(SENTENCES, { ...scene, ...this.seen, verdicts: this.lab.model.verdicts, moved: this.moved });
   }
 }

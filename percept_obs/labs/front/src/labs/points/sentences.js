@@ -3,6 +3,7 @@
 import { derived } from "../../engine/derived.js";
 import { settlingTime } from "../../engine/errors.js";
 import { valueBetween } from "../../engine/between.js";
+import { atEnd, DIVERGED, isEarly, notFound } from "../../ui/sentences.js";
 import { Body } from "./body.js";
 import { OWN } from "./kernels.js";
 
@@ -22,7 +23,7 @@ export function isPlane({ state, points }) {
 }
 
 /** Metres off within which every mark must be for the body to be found; for one point, a part of its distance. */
-export function nearEnough({ settings: { points } }) {
+function nearEnough({ settings: { points } }) {
   const apart = points.flatMap((one) => points.map((other) => Math.hypot(...one.map((value, i) => value - other[i]))));
   return ON_IT * (Math.max(...apart) || Math.hypot(...points[0]));
 }
@@ -67,7 +68,6 @@ export const metres = (value) => (value > FAR ? `over ${FAR} m` : `${value.toFix
 
 const still = ({ shown: { settings } }) =>
   settings.input === 0 && settings.camera_velocity.every((value) => value === 0);
-const atEnd = ({ now, end }) => now >= end;
 const away = ({ hidden }) => hidden.flatMap((one, k) => (one ? [k] : []));
 
 /** The marks that are hidden, by name. */
@@ -82,7 +82,7 @@ function hiddenOnes(facts) {
  * What may be said, the most important first.  Facts are what is seen at a time, with `shown`, `now`, `end`, `why`,
  * `moved`, and `prelude` for the first look.
  *
- * @type {{when: (facts: any) => any, text: (facts: any) => string}[]}
+ * @type {import("../../ui/sentences.js").Sentence[]}
  */
 export const SENTENCES = [
   {
@@ -98,10 +98,7 @@ export const SENTENCES = [
     text: () => "Three bodies, one picture. The camera's travel shifts the near one most: that tells them apart.",
   },
   { when: ({ why }) => why, text: () => "Three bodies, one picture: near and small, as it is, and far and large." },
-  {
-    when: ({ shown: { divergedAt } }) => divergedAt !== null,
-    text: ({ shown: { divergedAt } }) => `The estimate left every bound after ${divergedAt.toFixed(1)} s.`,
-  },
+  DIVERGED,
   {
     when: (facts) => away(facts).length === facts.hidden.length,
     text: () => "No mark is seen: nothing pulls the estimate.",
@@ -125,11 +122,10 @@ export const SENTENCES = [
   { when: ({ isFound }) => isFound, text: ({ off }) => `Found: the estimate lies on the body, ${metres(off)} off.` },
   {
     when: atEnd,
-    text: ({ end, shown: { time }, off }) =>
-      `Not found in ${(end - time[0]).toFixed(0)} s: the estimate is ${metres(off)} off.`,
+    text: (facts) => `${notFound(facts)}: the estimate is ${metres(facts.off)} off.`,
   },
   {
-    when: ({ now, end, shown: { time } }) => now - time[0] < EARLY * (end - time[0]),
+    when: (facts) => isEarly(facts, EARLY),
     text: () => "The estimate, in blue: each of its marks is pulled across to the ray of the true one.",
   },
   {
@@ -142,8 +138,3 @@ export const SENTENCES = [
   },
   { when: () => true, text: () => "The rays turn and pull anew: the estimate slides along them." },
 ];
-
-/** What is said of some facts. */
-export function sentenceOf(facts) {
-  return /** @type {any} */ (SENTENCES.find(({ when }) => when(facts))).text(facts);
-}

@@ -1,7 +1,6 @@
 // Glossary of the lab of many points; letters as MathML.
 
-const letter = (name, index = "") =>
-  `<math>${index ? `<msub><mi>${name}</mi><mi>${index}</mi></msub>` : `<mi>${name}</mi>`}</math>`;
+import { letter } from "../../ui/symbols.js";
 
 export const SYMBOLS = [
   [letter("x"), "the state: the places of all points, in the camera's frame, in m"],

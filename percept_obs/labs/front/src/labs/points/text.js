@@ -2,7 +2,8 @@
 
 import { derived } from "../../engine/derived.js";
 import { readable, short } from "../../draw/scales.js";
-import { filled, settledInWords } from "../../ui/words.js";
+import { filled } from "../../state/texts.js";
+import { divergedInWords, settledInWords } from "../../ui/words.js";
 import { inWords, mainly } from "./directions.js";
 import { eigen } from "./symmetric.js";
 
@@ -12,8 +13,8 @@ const NO_RATE = 1e-9;
 
 /** Verdict on the error, as PointsRun.verdict() in Python. */
 export function verdict({ time, worst, settling, divergedAt }, model) {
-  const { verdicts, remedy, judged, tolerance } = model;
-  if (divergedAt !== null) return filled(verdicts.diverged, { time: short(divergedAt), remedy });
+  const { judged, tolerance } = model;
+  if (divergedAt !== null) return divergedInWords(short(divergedAt - time[0]), model);
   const error = { judged, error: worst.at(-1), tolerance };
   return settledInWords(error, settling, time.at(-1) - time[0], model);
 }

@@ -6,7 +6,7 @@ import { keptLine } from "../../draw/lines.js";
 import { foundAfter, meanErrorOf } from "./sentences.js";
 
 /** The error of the body, or of the one mark that is hidden for a while. */
-export function chartOf(scene) {
+export function chartOf(_screen, scene) {
   const { shown, ghost, theme, secret, now, kept } = scene;
   const { time, absences } = shown;
   const since = foundAfter(shown);

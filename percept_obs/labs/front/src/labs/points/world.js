@@ -1,5 +1,6 @@
 // The world from above, on the first screen: a body, its estimate, and the rays on which its marks are seen.
 
+import { Box } from "../../draw/box.js";
 import { drawCamera, drawCone, drawGround } from "../../draw/map.js";
 import { derived } from "../../engine/derived.js";
 import { between, within } from "../../engine/between.js";
@@ -14,12 +15,10 @@ export function drawWorld(screen, scene, motion, note) {
   const moving = view.glide(worldGoal(screen, scene), motion);
   view.begin(theme);
   const { width, height } = view;
-  const [cx, cz, scale] = /** @type {number[]} */ (view.at);
-  const x = (value) => width / 2 + (value - cx) * scale;
-  const y = (value) => height / 2 - 4 - (value - cz) * scale;
+  const { x, y, frame } = view.mapped(4);
   const on = (place) => /** @type {[number, number]} */ ([x(place[0]), y(place[2])]);
   const seenFrom = (place) => on(body.toWorld(place));
-  drawGround(view, [cx, cz, scale], { x, y }, theme);
+  drawGround(view, { x, y }, theme);
   if (!screen.resetButton.hidden) view.avoid(width - 62, 27, 62, 27);
   const camera = seenFrom([0, 0, 0]);
   const [c1, , zoom] = /** @type {number[]} */ (screen.image.at);
@@ -78,7 +77,6 @@ export function drawWorld(screen, scene, motion, note) {
     view.note(within(u, 10, width - 10), within(v, 10, height - 50) + 8, note.text);
   }
   view.end();
-  const frame = { box: { left: 8, top: 8, width: width - 16, height: height - 16 }, scale, x, y };
   const first = seen.foundInWorld[0];
   const apart = Math.hypot(first[0] - seen.inWorld[0][0], first[2] - seen.inWorld[0][2]);
   const movable = seen.sees && shown.settings.start === "error" && (apart > CLOSE || screen.lab.held);
@@ -104,16 +102,13 @@ function pathOf(screen, { shown }) {
 }
 
 function worldGoal(screen, scene) {
-  const box = [Infinity, -Infinity, Infinity, -Infinity];
-  const take = ([x, , z]) => {
-    [box[0], box[1]] = [Math.min(box[0], x), Math.max(box[1], x)];
-    [box[2], box[3]] = [Math.min(box[2], z), Math.max(box[3], z)];
-  };
+  const box = new Box();
+  const take = ([x, , z]) => box.take([x, z]);
   for (const { camera, places } of pathOf(screen, scene)) [camera, ...places].forEach(take);
   if (scene.why) screen.seen.places.forEach((place) => take(screen.seen.body.toWorld(place.map((value) => 2 * value))));
   const { copyInWorld, prelude } = screen.seen;
   if (copyInWorld && !prelude && !screen.twin.grip) copyInWorld.forEach(take);
   const { width, height } = screen.world.size ?? { width: 350, height: 300 };
-  const scale = Math.min((width - 50) / (box[1] - box[0] + 0.5), (height - 60) / (box[3] - box[2] + 0.5));
-  return [(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, scale];
+  const [wide, high] = box.size;
+  return [...box.middle, Math.min((width - 50) / (wide + 0.5), (height - 60) / (high + 0.5))];
 }

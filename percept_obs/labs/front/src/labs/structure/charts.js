@@ -1,8 +1,9 @@
 // The charts of the structure lab besides the first: lines, scale, gaps.
 
 import { columnOf, derived } from "../../engine/derived.js";
-import { around, coordinateLines, decades, distancesAround, linesOf, resetsOf } from "../../draw/lines.js";
-import { percent } from "../../ui/words.js";
+import {
+  around, called, coordinateLines, decades, distancesAround, inPercent, levelOf, linesOf, resetsOf,
+} from "../../draw/lines.js";
 import { innovationOf, quantityOf, rangeOf } from "./quantities.js";
 
 /** Titles of the charts, by their names. */
@@ -52,14 +53,12 @@ const BUILD = {
   unknown3: (scene, span) => unknown(scene, span, 2),
   error(scene, span) {
     const { tolerance } = scene.shown;
-    const percents = ({ error }) => derived(error, "percent", () => error.map((value) => 100 * value));
-    const lines = linesOf(scene, (_, run) => percents(run));
-    const level = { value: 100 * tolerance, text: `tolerance ${percent(tolerance, 6)}` };
+    const lines = linesOf(scene, (_, { error }) => inPercent(error));
+    const level = levelOf(tolerance);
     return { lines, unit: "%", level, scale: decades(lines, span, 1e-6, 1e5, level.value) };
   },
   image(scene, span) {
-    const called = (line, c) => ({ ...line, text: line.text && `y${c + 1} ${line.text}` });
-    const lines = [0, 1].flatMap((c) => outputs(scene, c).map((line) => called(line, c)));
+    const lines = [0, 1].flatMap((c) => outputs(scene, c).map((line) => called(line, `y${c + 1}`)));
     return { lines, unit: "", scale: around(lines, span) };
   },
   depth(scene, span) {

@@ -39,13 +39,11 @@ export function drawMap(view, first, scene, note) {
   const { seen, worlds, others: [less, more], stories } = first;
   const { theme, now, why } = scene;
   view.begin(theme);
-  const { width, height } = view;
-  const [cx, cz, scale] = view.at;
-  const x = (value) => width / 2 + (value - cx) * scale;
-  const y = (value) => height / 2 - 6 - (value - cz) * scale;
+  const { width } = view;
+  const { x, y, scale, frame } = view.mapped(6);
   const on = (place) => [x(place[0]), y(place[2])];
   if (first.moved && !first.questions.open) view.avoid(width - 56, 22, 56, 22);
-  drawGround(view, { x, y, cx, cz, scale }, theme);
+  drawGround(view, { x, y }, theme);
   drawDirections(view, theme);
   if (seen.free) {
     const which = (value) => on(worlds.places({ ...less, [stories ? "share" : "size"]: value }, now).object);
@@ -69,7 +67,7 @@ export function drawMap(view, first, scene, note) {
     view.note(u, v + RIM, note.text);
   }
   view.end();
-  return { box: { left: 8, top: 8, width: width - 16, height: height - 16 }, scale, x, y };
+  return frame;
 }
 
 /** Camera, way, cone and car of a world. */
@@ -161,8 +159,8 @@ function drawDirections(view, theme) {
 }
 
 /** Lines, and the length of one of their squares. */
-function drawGround(view, { x, y, cx, cz, scale }, theme) {
-  const { width, height } = view;
+function drawGround(view, { x, y }, theme) {
+  const { width, height, at: [cx, cz, scale] } = view;
   const step = roundStep(SQUARE / scale);
   const thin = { width: 1, alpha: 0.35 };
   for (let k = Math.ceil((cx - width / scale) / step); k * step < cx + width / scale; k++) {

@@ -17,7 +17,6 @@ function asked(ticked, changes = {}) {
   };
 }
 
-const lastOf = (values) => values[values.length - 1];
 const settles = ({ runs: [run] }) => Number.isFinite(run.settling);
 
 /** Largest error of an estimate between two times. */
@@ -29,7 +28,7 @@ function worst({ time, runs: [{ error }] }, low, high) {
 function lost({ runs: [run] }) {
   const [, first] = run.gaps.find(([, , why]) => why === 2) ?? [0, 0];
   const found = run.gaps.filter(([begin, , why]) => why === 1 && begin > first);
-  return found.length ? [found[0][0], lastOf(found)[1]] : [];
+  return found.length ? [found[0][0], found.at(-1)[1]] : [];
 }
 
 /** @type {import("../../ui/questions.js").Question[]} */
@@ -48,7 +47,7 @@ export const QUESTIONS = [
     spot: () => ({}),
     holds: ({ shown }) =>
       ["d_s", "v_c1"].every((name) => shown.choice?.unknown.includes(name)) &&
-      settles(shown) && lastOf(shown.runs[0].error) < shown.tolerance,
+      settles(shown) && shown.runs[0].error.at(-1) < shown.tolerance,
   },
   {
     name: "story",
@@ -65,7 +64,7 @@ export const QUESTIONS = [
     holds: ({ shown, worlds }) =>
       Boolean(shown.refusal) &&
       [0, 0.5].every((share) => worlds.difference({ size: 1, share }) < 1e-9) &&
-      Math.hypot(...worlds.places({ size: 1, share: 0 }, lastOf(shown.time)).camera) === 0,
+      Math.hypot(...worlds.places({ size: 1, share: 0 }, shown.time.at(-1)).camera) === 0,
   },
   {
     name: "zero",
@@ -90,7 +89,7 @@ export const QUESTIONS = [
       const [begin, end] = lost(shown);
       const { v_c: [, , around], v_c_swing: [, , swing], rate } = shown.settings;
       const [before, after] = [begin, end].map((time) => around + swing * Math.sin(rate * time));
-      const last = lastOf(shown.time);
+      const last = shown.time.at(-1);
       return before * after < 0 && worst(shown, end, last) < 0.1 && worst(ghost, begin, end) > 0.5;
     },
   },

@@ -2,13 +2,15 @@
 
 import { tick } from "../../ui/controls.js";
 import { Screen } from "../../ui/screen.js";
+import { firstOf } from "../../ui/sentences.js";
 import { within } from "../../engine/between.js";
 import { isTyped } from "../../engine/typed.js";
 import { element } from "../../draw/dom.js";
-import { KEPT } from "../../draw/looks.js";
+import { Box } from "../../draw/box.js";
+import { keptLine } from "../../draw/lines.js";
 import { isSampled } from "./camera.js";
 import { QUESTIONS } from "./questions.js";
-import { hasStories, NEARLY, seenOf, sentenceOf, speed } from "./sentences.js";
+import { hasStories, NEARLY, seenOf, SENTENCES, speed } from "./sentences.js";
 import { knowledgeOf, ratiosOf, TRUE, unknownOf, Worlds } from "./worlds.js";
 import { drawMap, placeOfMap } from "./map.js";
 import { carAside, HIGH, metres } from "./marks.js";
@@ -190,20 +192,17 @@ export class StructureScreen extends Screen {
   /** Middle and scale of the image in which the whole film lies. */
   imageGoal({ shown }) {
     const { image, time } = shown;
-    const bounds = [[Infinity, -Infinity], [Infinity, -Infinity]];
+    const box = new Box();
     let longest = 0;
     for (let k = 0; k < time.length; k += Math.ceil(time.length / 100)) {
       const [y1, y2, length] = image.subarray(3 * k, 3 * k + 3);
       longest = Math.max(longest, length);
-      [y1, y2].forEach((value, c) => {
-        const half = (c ? HIGH : 1) * (length / 2);
-        bounds[c] = [Math.min(bounds[c][0], value - half), Math.max(bounds[c][1], value + half)];
-      });
+      box.take([y1, y2], [length / 2, (HIGH * length) / 2]);
     }
     const { width, height } = this.image.size ?? { width: 360, height: 300 };
-    const [across, up] = bounds.map(([low, high]) => Math.max(high - low, 1e-9));
+    const [across, up] = box.size.map((side) => Math.max(side, 1e-9));
     const scale = Math.min((width - 24) / across, ((height - FOOT) / 3 - 26) / Math.max(up, HIGH * longest));
-    return [(bounds[0][0] + bounds[0][1]) / 2, (bounds[1][0] + bounds[1][1]) / 2, Math.max(scale, 1 / across)];
+    return [...box.middle, Math.max(scale, 1 / across)];
   }
 
   // The worlds from above, one inside of the other: all cameras begin at one place.
@@ -243,7 +242,7 @@ export class StructureScreen extends Screen {
       scale: { low: 0, high: Math.max(2.4, free ? 1.15 * Math.max(...sizes) : 0) },
       title: `${free ? (this.stories ? "speed" : "size") : quantity} ÷ true`,
       lines: [
-        ...(ghost ? [this.keptLine(scene)] : []),
+        ...(ghost ? [{ ...keptLine(scene.kept, ghost.time, this.ratiosOfKept(ghost), theme), secret }] : []),
         ...(free ? sizes.map((value, k) => level(`other ${k}`, value, theme.muted, { width: 2.5, secret })) : []),
         ...this.otherLines(scene),
         ...(begun ? [{ id: "estimate", text: shown.runs.length > 1 ? run.title : "estimate", ...estimated() }] : []),
@@ -261,9 +260,8 @@ export class StructureScreen extends Screen {
     });
   }
 
-  keptLine({ ghost, kept, theme, secret }) {
-    const values = ratiosOf(this.worlds, ghost, ghost.runs[0]).map((value) => within(value, -1, 9));
-    return { id: "kept", text: kept, time: ghost.time, values, colour: theme.kept, dash: KEPT, secret };
+  ratiosOfKept(ghost) {
+    return ratiosOf(this.worlds, ghost, ghost.runs[0]).map((value) => within(value, -1, 9));
   }
 
   /** A world's speed of the camera over the true one. */
@@ -293,7 +291,8 @@ export class StructureScreen extends Screen {
   }
 
   sentence({ why, ...scene }) {
-    return sentenceOf({ ...scene, ...this.seen, alike: why, moved: this.moved });
+    const { verdicts } = this.lab.model;
+    return firstOf(SENTENCES, { ...scene, ...this.seen, verdicts, alike: why, moved: this.moved });
   }
 }
 

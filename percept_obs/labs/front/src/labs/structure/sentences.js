@@ -1,5 +1,6 @@
 // What the first screen of the structure lab says of a run: the first row that holds, from the values that are drawn.
 
+import { atEnd, DIVERGED, notFound } from "../../ui/sentences.js";
 import { estimatedSpeeds, ratiosOf } from "./worlds.js";
 
 /** Numbers of the reasons for gaps. */
@@ -53,15 +54,13 @@ export function seenOf(worlds, { shown, chosen: run, now, at }) {
 }
 
 const what = ({ known }) => (known.size ? "speed" : "distance");
-const atEnd = ({ now, end }) => now >= end;
-const notFound = ({ end, shown: { time } }) => `Not found in ${(end - time[0]).toFixed(0)} s`;
 const times = (ratio) => `${ratio.toFixed(2)} times`;
 
 /**
  * What may be said, the most important first.  Facts are what is seen at a time, with `shown`, `now`, `end`, `moved`,
  * and `alike`, where it is shown why all worlds look alike.
  *
- * @type {{when: (facts: any) => any, text: (facts: any) => string}[]}
+ * @type {import("../../ui/sentences.js").Sentence[]}
  */
 export const SENTENCES = [
   {
@@ -90,10 +89,7 @@ export const SENTENCES = [
     text: () => "A whole family of worlds makes this film: small, near, slow or large, far, fast.",
   },
   { when: ({ free }) => free, text: () => "The film cannot tell which. Tick a speed." },
-  {
-    when: ({ run, now }) => run.divergedAt !== null && run.divergedAt <= now,
-    text: ({ run }) => `The estimate left every bound after ${run.divergedAt.toFixed(1)} s.`,
-  },
+  DIVERGED,
   {
     when: ({ why, known }) => why === NEARLY && known.size,
     text: () => "No estimate now: the car is so far away that noise would be most of it.",
@@ -138,8 +134,3 @@ export const SENTENCES = [
   { when: ({ estimate }) => estimate, text: () => "The size is known, so the film tells a speed." },
   { when: () => true, text: () => "Each world needs another speed. The estimate slides to the one that is read." },
 ];
-
-/** What is said of some facts. */
-export function sentenceOf(facts) {
-  return /** @type {any} */ (SENTENCES.find(({ when }) => when(facts))).text(facts);
-}

@@ -1,7 +1,8 @@
 // Why it happened, and the pictures in words.
 
 import { readable, short } from "../../draw/scales.js";
-import { filled, leavingInWords } from "../../ui/words.js";
+import { filled } from "../../state/texts.js";
+import { leavingInWords } from "../../ui/words.js";
 import { quantityOf } from "./quantities.js";
 
 const ONE_GAIN = ["identifier_based", "de_luca"];

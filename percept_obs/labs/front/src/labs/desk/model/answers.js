@@ -1,12 +1,10 @@
 // The answer to a sheet with its settings, by numbers: marks of lines, the wrong terms, words, and what is drawn.
 
+import { filled } from "../../../state/texts.js";
 import { grownOf, pictureOf } from "./arrows.js";
 
 /** Number of hints from which on wrong terms are marked; without Python nothing is asked for. */
 const TERM = 2;
-
-/** Words with values in place of what stands in braces. */
-const filled = (text, values) => text.replace(/\{(\w+)\}/g, (_, name) => values[name]);
 
 export function answerTo(/** @type {import("./sheet.js").Sheet} */ sheet, settings, alone) {
   const { printed, lines, said } = sheet;
