@@ -65,13 +65,12 @@ def test_derivatives_by_the_point_and_by_every_cause_are_those_of_differences(mi
     for k in range(4):
         by = difference(lambda h, k=k: seen(track, point + h * np.eye(4)[k], mix_up, wrong).outputs)
         np.testing.assert_allclose(found.by_point[:, :, k], by, atol=1e-5 * np.abs(by).max())
-    for key, cause in CAUSES.items():
-        for k in range(cause.size):
-            step = np.eye(cause.size)[k]
-            by = difference(
-                lambda h, key=key, step=step: seen(track, point, mix_up, {**wrong, key: wrong[key] + h * step}).outputs
-            )
-            np.testing.assert_allclose(found.by_cause[key][:, :, k], by, atol=5e-3 * np.abs(by).max(), err_msg=key)
+    steps = [(key, step) for key, cause in CAUSES.items() for step in np.eye(cause.size)]
+    for k, (key, step) in enumerate(steps):
+        by = difference(
+            lambda h, key=key, step=step: seen(track, point, mix_up, {**wrong, key: wrong[key] + h * step}).outputs
+        )
+        np.testing.assert_allclose(found.by_cause[:, :, k], by, atol=5e-3 * np.abs(by).max(), err_msg=key)
 
 
 @pytest.mark.parametrize("seed", [0, 3, 7])

@@ -13,6 +13,12 @@ from percept_obs.compile import Array
 LARGEST_OFFSET = 0.25
 """Largest offset in seconds between images and motion that is tried."""
 
+OFFSET, FOCAL, BEND = "time offset", "focal length", "distortion ignored"
+BIAS, DRIFT, SHUTTER = "gyro bias", "scale drift", "rolling shutter"
+
+DIVIDED = "the one by which the images were divided"
+ROWS = "rows of an image are read one after another"
+
 
 @dataclass(frozen=True)
 class Cause:
@@ -23,7 +29,7 @@ class Cause:
     """
 
     key: str
-    sentence: Callable[[Array], str]
+    said: str
     largest: float
     smallest: float
     usual: float
@@ -35,70 +41,23 @@ class Cause:
         """Usual size with its unit."""
         return f"{self.usual:g} {self.unit}".removesuffix(" 1")
 
-
-def _offset(late: Array) -> str:
-    return f"the images are {abs(late[0]):.3f} s {'late' if late[0] > 0 else 'early'} against the motion"
-
-
-def _many(values: Array) -> str:
-    return ", ".join(f"{value:.4f}" for value in values)
+    def sentence(self, value: Array) -> str:
+        """Return the mistake in words, with its size."""
+        first, listed = float(value[0]), ", ".join(f"{each:.4f}" for each in value)
+        words = {"first": first, "size": abs(first), "side": "late" if first > 0 else "early", "listed": listed}
+        return self.said.format(**words, ratio=1 + first, percent=100 * first, milli=1000 * first)
 
 
 CAUSES = MappingProxyType(
     {
         cause.key: cause
         for cause in (
-            Cause(
-                "time offset",
-                lambda late: (
-                    f"the images are {abs(late[0]):.3f} s {'late' if late[0] > 0 else 'early'} against the motion"
-                ),
-                LARGEST_OFFSET,
-                0.005,
-                0.05,
-                "s",
-            ),
-            Cause(
-                "focal length",
-                lambda more: f"the focal length is {1 + more[0]:.3f} times the one by which the images were divided",
-                0.5,
-                0.01,
-                0.1,
-                "1",
-            ),
-            Cause(
-                "distortion ignored",
-                lambda bend: f"the lens bends the images, by the factor 1 {bend[0]:+.3f} |y|^2",
-                0.6,
-                0.02,
-                0.1,
-                "1",
-            ),
-            Cause(
-                "gyro bias",
-                lambda bias: f"the angular velocity is wrong by a constant ({_many(bias)}) rad/s",
-                0.3,
-                0.003,
-                0.02,
-                "rad/s",
-                3,
-            ),
-            Cause(
-                "scale drift",
-                lambda rate: f"the translation grows too long by {100 * rate[0]:.2g} % a second",
-                0.3,
-                0.003,
-                0.03,
-                "1/s",
-            ),
-            Cause(
-                "rolling shutter",
-                lambda rows: f"rows of an image are read one after another, {1000 * rows[0]:.3g} ms a focal length",
-                0.1,
-                0.003,
-                0.02,
-                "s",
-            ),
+            Cause(OFFSET, "the images are {size:.3f} s {side} against the motion", LARGEST_OFFSET, 0.005, 0.05, "s"),
+            Cause(FOCAL, f"the focal length is {{ratio:.3f}} times {DIVIDED}", 0.5, 0.01, 0.1, "1"),
+            Cause(BEND, "the lens bends the images, by the factor 1 {first:+.3f} |y|^2", 0.6, 0.02, 0.1, "1"),
+            Cause(BIAS, "the angular velocity is wrong by a constant ({listed}) rad/s", 0.3, 0.003, 0.02, "rad/s", 3),
+            Cause(DRIFT, "the translation grows too long by {percent:.2g} % a second", 0.3, 0.003, 0.03, "1/s"),
+            Cause(SHUTTER, f"{ROWS}, {{milli:.3g}} ms a focal length", 0.1, 0.003, 0.02, "s"),
         )
     }
 )
