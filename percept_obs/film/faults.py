@@ -13,7 +13,6 @@ from percept_obs.compile import Array
 from percept_obs.film.adjustment import (
     FOCUS,
     LENS,
-    PASSES,
     SHAPE,
     SHIFT,
     SHUTTER,
@@ -31,32 +30,48 @@ from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
 from percept_obs.studies.diagnosis import Finding
 
-CLEARLY, SURELY = 5.0, 4.0
-"""Logarithm by which corners are likelier with a fault that is named, and standard deviations of what else is named."""
 
-FEWEST = 30
-"""Pictures with a pose that are needed."""
+@dataclass(frozen=True)
+class Limits:
+    """From where on a fault of a film is named."""
 
-ROUNDS = 4
-"""Searches at most for the faults that explain the corners best, each with the last one's corrected."""
+    # The corners must be e^5 = 150 times as likely with a fault, and a size must be 4 standard deviations from 0, which
+    # chance reaches in one of 16,000: of the films of many telephones, hardly one is accused wrongly.
+    clearly: float = 5.0
+    surely: float = 4.0
 
-UNEXPLAINED, SCATTER = 0.15, 1.0
-"""Pixels that noise does not explain, and pixels of noise, that are worth naming."""
+    # A slow hand shows its faults over a second, 30 pictures.  Faults hide each other, so that the search is repeated
+    # with those corrected that were found, four times at most, each with eight linearisations at most.
+    fewest: int = 30
+    searches: int = 4
+    passes: int = 8
 
-UNKNOWN, WRONG = 0.02, 0.1
-"""Relative deviation of the focal length, and its difference from the camera's, that are worth naming."""
+    # Pixels that are neither explained nor noise, and pixels of noise, that make distances worse.
+    unexplained: float = 0.15
+    scatter: float = 1.0
 
-SMALL = 0.15
-"""Share of the picture's longer side under which a board is small."""
+    # Distances are as uncertain as the focal length: 2 % are worth a word.  It is the camera's own up to 10 %, for
+    # cameras that are given are those of other pictures: autofocus and a crop of the film change as much.
+    unknown: float = 0.02
+    wrong: float = 0.1
 
-AROUND, TOWARDS = 3.0, 0.05
-"""Degrees that the camera must go around the board, or share of the distance that it must go towards it."""
+    # A board that fills less than 15 % of the longer side shows poses badly.
+    small: float = 0.15
 
-UNEVEN = 0.2
-"""Range of the times from picture to picture, over their median, that is worth naming."""
+    # The camera shows distances if it goes 3 degrees around the board, or by 5 % of the distance towards it.
+    around: float = 3.0
+    towards: float = 0.05
 
-BLURRED, LONG = 2.5, 1280
-"""Width of edges in pixels, in one picture of ten, that is worth naming; more in pictures longer than this."""
+    # The frame rate varies if the times between pictures, nine in ten, differ by 20 % of their median.
+    uneven: float = 0.2
+
+    # Sharp edges are 2.5 pixels wide at most in nine pictures of ten; in pictures with a longer side than 1280 pixels,
+    # in which a lens shows no more, they are as much wider.
+    blurred: float = 2.5
+    long: float = 1280
+
+
+LIMITS = Limits()
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,17 +149,17 @@ def find_faults(
     """
     rows = np.searchsorted(time, poses.time)
     good = np.isfinite(corners[rows]).all(axis=-1).sum(axis=1) >= FEWEST_CORNERS
-    if good.sum() < FEWEST:
+    if good.sum() < LIMITS.fewest:
         raise ValueError(
-            f"{good.sum()} pictures with a pose show {FEWEST_CORNERS} corners of the board, and {FEWEST} are needed to "
-            "find faults: film for longer, with the board in the picture"
+            f"{good.sum()} pictures with a pose show {FEWEST_CORNERS} corners of the board, and {LIMITS.fewest} are "
+            "needed to find faults: film for longer, with the board in the picture"
         )
     rows, poses = rows[good], Poses(poses.time[good], poses.position[good], poses.orientation[good])
     given, state = start(corners[rows], board.points, np.array(size, dtype=float), camera, poses)
     parts: tuple[Part, ...] = ()
     left = []
-    for search in range(ROUNDS):  # at first at the given lens, for a wrong one may stand for a fault
-        state, fit = adjusted(given, state, _columns(parts), passes=PASSES if search else 1)
+    for search in range(LIMITS.searches):  # at first at the given lens, for a wrong one may stand for a fault
+        state, fit = adjusted(given, state, _columns(parts), passes=LIMITS.passes if search else 1)
         left.append(fit.left)
         before, parts = parts, max(CHOICES, key=lambda each: _worth(fit, each))
         if search and parts == before:
@@ -174,7 +189,7 @@ def _columns(parts: tuple[Part, ...]) -> list[int]:
 def _worth(fit: Fit, parts: tuple[Part, ...]) -> float:
     """Logarithm of the corners' likelihood, less what each fault must add to it."""
     columns = _columns(parts)
-    return fit.normal(columns).likelihood(columns) - CLEARLY * len(parts)
+    return fit.normal(columns).likelihood(columns) - LIMITS.clearly * len(parts)
 
 
 def _size(given: Corners, state: State, fit: Fit, part: Part, parts: tuple[Part, ...]) -> tuple[float, float]:
@@ -192,17 +207,17 @@ def _size(given: Corners, state: State, fit: Fit, part: Part, parts: tuple[Part,
 
 def _of_fit(state: State, fit: Fit, parts: tuple[Part, ...]) -> Iterator[Finding]:
     """Findings of what the fit leaves, and of the focal length."""
-    if fit.excess > UNEXPLAINED and fit.sure > SURELY:
+    if fit.excess > LIMITS.unexplained and fit.sure > LIMITS.surely:
         said = f"something is not known: {fit.excess:.2g} pixels of the corners are neither explained nor noise"
         yield Finding("unknown", said, f"the noise is {fit.noise:.2g} pixels", fit.excess, fit.excess / fit.sure)
-    if fit.noise > SCATTER:
+    if fit.noise > LIMITS.scatter:
         yield Finding("noise", f"the corners scatter by {fit.noise:.2g} pixels", "in single pictures", fit.noise)
     columns = _columns(parts)
     more, deviation = float(state.own[0, 0]), math.sqrt(fit.normal(columns).solved(columns)[2][0, 0])
-    if abs(more) > max(WRONG, SURELY * deviation):
+    if abs(more) > max(LIMITS.wrong, LIMITS.surely * deviation):
         said = f"the focal length is {1 + more:.3f} times the camera's"
         yield Finding("lens", said, "all pictures together say so", 1 + more, deviation)
-    if deviation > UNKNOWN:
+    if deviation > LIMITS.unknown:
         said = f"the focal length, and so every distance, is known to {100 * deviation:.2g} % only"
         yield Finding("focal length", said, "the board was not seen from the side enough", 1 + more, deviation)
 
@@ -212,7 +227,7 @@ def _of_times(time: Array) -> Iterator[Finding]:
     steps = np.diff(time)
     low, middle, high = 1e3 * np.quantile(steps, [0.05, 0.5, 0.95])
     again = int((steps <= 0).sum())
-    if again or high - low > UNEVEN * middle:
+    if again or high - low > LIMITS.uneven * middle:
         evidence = f"they are {low:.3g} to {high:.3g} ms apart, and {again} are no later than the one before"
         yield Finding("frame rate", "the frame rate varies", evidence, float((high - low) / middle))
 
@@ -221,7 +236,7 @@ def _of_path(given: Corners, state: State) -> Iterator[Finding]:
     """Findings of a small board and of a path that shows no distances."""
     seen = np.where(given.seen[..., None], given.pixels, np.nan)
     share = float(np.median((np.nanmax(seen, axis=1) - np.nanmin(seen, axis=1)).max(axis=1)) / given.size.max())
-    if share < SMALL:
+    if share < LIMITS.small:
         evidence = f"its corners fill {100 * share:.2g} % of the longer side; come nearer, or print a larger one"
         yield Finding("small board", "the board is small in the picture", evidence, share)
     away = -np.einsum("kji,kj->ki", state.R, state.p) - given.places.mean(axis=0)
@@ -230,9 +245,9 @@ def _of_path(given: Corners, state: State) -> Iterator[Finding]:
     middle = rays.mean(axis=0) / np.linalg.norm(rays.mean(axis=0))
     around = 2 * math.degrees(np.quantile(np.arccos(np.minimum(rays @ middle, 1)), 0.95))
     towards = float(np.ptp(np.quantile(far, [0.05, 0.95])) / np.median(far))
-    if around < AROUND:
-        key = "no parallax" if towards < TOWARDS else "along the axis"
-        said = "the camera hardly moves" if towards < TOWARDS else "the camera moves along its optical axis only"
+    if around < LIMITS.around:
+        key = "no parallax" if towards < LIMITS.towards else "along the axis"
+        said = "the camera hardly moves" if towards < LIMITS.towards else "the camera moves along its optical axis only"
         evidence = f"it goes {around:.2g} degrees around the board and {100 * towards:.2g} % of the distance towards it"
         yield Finding(key, f"{said}, which shows distances badly", evidence, around)
 
@@ -243,7 +258,7 @@ def _of_blur(board: Board, given: Corners, fit: Fit, width: Array) -> Iterator[F
     from scipy.special import erf
 
     wide = float(np.nanquantile(width, 0.9)) if np.isfinite(width).any() else math.nan
-    if not wide > BLURRED * max(1.0, given.size.max() / LONG):
+    if not wide > LIMITS.blurred * max(1.0, given.size.max() / LIMITS.long):
         return
     begin, end = board.neighbours.T
     along = given.pixels[:, end] - given.pixels[:, begin]
@@ -257,6 +272,6 @@ def _of_blur(board: Board, given: Corners, fit: Fit, width: Array) -> Iterator[F
 
     (_, exposure), spread = curve_fit(widened, speed[good], width[good], (0.7, 0.005), bounds=(1e-4, [50, 0.1]))
     evidence = f"in one picture of ten they are over {wide:.2g} pixels wide"
-    if exposure > SURELY * math.sqrt(spread[1, 1]):
+    if exposure > LIMITS.surely * math.sqrt(spread[1, 1]):
         evidence += f", as by an exposure of {1e3 * exposure:.2g} ms; more light helps"
     yield Finding("blur", "the edges are blurred", evidence, wide)

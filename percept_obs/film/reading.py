@@ -9,7 +9,7 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.film.board import Board, other_markers
-from percept_obs.film.faults import FEWEST, Faults, find_faults
+from percept_obs.film.faults import LIMITS, Faults, find_faults
 from percept_obs.film.film import BOARD, TRIANGULATION, Film
 from percept_obs.film.lens import FEWEST_CORNERS, Seen, find_lens, find_poses
 from percept_obs.film.pictures import undistorted
@@ -183,15 +183,15 @@ def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
     enough = int((count >= FEWEST_CORNERS).sum())
     if sighting.twice.mean() > 0.1:
         raise ValueError(f"'{video.path}' shows two boards with the same markers; leave one in the picture")
-    if np.ptp(sighting.time) < SHORTEST_FILM or len(count) < FEWEST:
+    if np.ptp(sighting.time) < SHORTEST_FILM or len(count) < LIMITS.fewest:
         raise ValueError(
             f"'{video.path}' is too short: {len(count)} pictures in {np.ptp(sighting.time):.1f} s; film for 10 to 20 s"
         )
-    if enough < FEWEST:
+    if enough < LIMITS.fewest:
         instead = _seen_instead(video, len(count)) or "Is it this board (board=...)?"
         raise ValueError(
             f"{enough} of {len(count)} pictures of '{video.path}' show {FEWEST_CORNERS} corners of the board, "
-            f"{board.name}, and {FEWEST} are needed. {instead} It must "
+            f"{board.name}, and {LIMITS.fewest} are needed. {instead} It must "
             "lie flat, be sharp, and fill a third of the picture's width. Without a board, give poses=... and "
             "camera=..., as of read_colmap"
         )

@@ -315,3 +315,11 @@ def test_velocities_are_drawn_and_told():
             figures.velocities(wrong)
     with pytest.raises(ValueError, match="the axis is 3"):
         figures.velocities({"a": exact}, axis=3)
+
+
+def test_turns_between_poses_about_two_axes_are_those_of_the_camera():
+    time = np.arange(0, 3, 0.1)
+    path = poses(time).path()
+    between = (path.time > 0.5) & (path.time < 2.4)  # away from the ends, where nothing smooths from both sides
+    _, rotation, *_ = carried(path.time[between])
+    assert (rotation.inv() * path.rotation[between]).magnitude().max() < 1e-4

@@ -12,8 +12,14 @@ from percept_obs.figures import causes
 from percept_obs.recording import Unlikely
 from percept_obs.studies.diagnosis.causes import CAUSES
 from percept_obs.studies.diagnosis.fitting import fit
+from percept_obs.studies.diagnosis.search import LIMITS, _fewest
 from percept_obs.studies.diagnosis.tracks import guess, seen, spikes, track_of
 
+TURNING = rigid(
+    camera_angular_velocity=lambda t: [-np.sin(2 * t), -np.cos(3 * t), -0.5],
+    camera_velocity=lambda t: [np.cos(t), 0.3, 0],
+)
+SCENE = Scenario("turning", TURNING, (0.2, 0.1, 6), 2, pinhole())
 SESSION, DRAW = drawn(3, points=2)
 BLIND = [replace(each, truth=None, signal=None) for each in SESSION]
 
@@ -27,12 +33,7 @@ def test_the_point_that_explains_a_track_leaves_its_noise():
 
 
 def test_a_path_is_of_fourth_order_where_rotations_do_not_commute():
-    turning = rigid(
-        camera_angular_velocity=lambda t: [-np.sin(2 * t), -np.cos(3 * t), -0.5],
-        camera_velocity=lambda t: [np.cos(t), 0.3, 0],
-    )
-    exact = record(Scenario("turning", turning, (0.2, 0.1, 6), 2, pinhole()), camera=Camera(0.05))
-    assert fit([track_of(exact)], "nothing", ()).rms < 2e-6
+    assert fit([track_of(record(SCENE, camera=Camera(0.05)))], "nothing", ()).rms < 2e-6
 
 
 def test_a_number_that_was_not_fitted_is_estimated_by_one_step():
@@ -41,6 +42,15 @@ def test_a_number_that_was_not_fitted_is_estimated_by_one_step():
     (fitted,) = fit(tracks, "nothing", ["focal length"]).wrong.values()
     estimate = fit(tracks, "nothing", ()).estimates(["focal length"])["focal length"]
     assert estimate.value == pytest.approx(fitted, rel=0.3)
+
+
+@pytest.mark.parametrize(("ratio", "kept"), [(1.1, ["focal length"]), (1.004, [])])
+def test_numbers_that_are_not_needed_or_small_are_dropped(ratio, kept):
+    """A focal length that is wrong by 0.4 % is sure and makes the samples much likelier, but is not worth a word."""
+    exact = record(SCENE, camera=Camera(0.05, Gaussian(1e-4)))
+    found = fit([track_of(replace(exact, outputs=ratio * exact.outputs))], "nothing", ["focal length", "gyro bias"])
+    assert found.estimates(["focal length"])["focal length"].sure > LIMITS.surely
+    assert [*_fewest(found).wrong] == kept
 
 
 def test_lost_samples_and_one_output_are_explained_as_well():

@@ -34,7 +34,7 @@ REACH = 1.5 * LARGEST_OFFSET
 """Seconds before and after a track for which the motion is needed at most."""
 
 SPIKE = 12.0
-"""How many times the usual distance from its neighbours' median makes a sample a spike: 8 deviations of normal noise."""
+"""Usual distances from the median of its neighbours that make a sample a spike: 8 deviations of normal noise."""
 
 SMOOTH = 5e-3
 """Focal lengths that come on top: where a smooth track turns, a sample lies so far from its neighbours' median."""
