@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from percept_obs.compile import Array, Flags
+from percept_obs.recording.normal import Normal, less
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
-from percept_obs.studies.diagnosis.normal import Normal, less
 from percept_obs.validation import needed
 
 POSE = 6
@@ -37,23 +37,13 @@ left then is noise whatever the fault, since nothing but noise changes so much f
 class Limits:
     """What is known of corners before a film is seen, and when a fit ends."""
 
-    # A picture that is stabilised is shifted against its neighbours by some 10 pixels.
-    jitter: float = 10.0
-
-    # OpenCV finds no corner better than to 0.01 pixels.  A frame has too few corners to tell its own noise, so that
-    # the noise of all frames counts for 20 more of its values.
-    finest: float = 0.01
-    worth: float = 20
-
-    # A corner is wrong if 5 times as much is left of it as of the median corner, of all and of its frame.
-    far: float = 5.0
-
-    # Errors of corners last for less than 30 frames; a correlation below 0.03 is chance.
-    lags: int = 30
-    white: float = 0.03
-
-    # A fit ends when no corner moves by 0.02 pixels any more, a tenth of the usual noise.
-    settled: float = 0.02
+    jitter: float = 10.0  # pixels by which a stabilisation usually shifts one picture against its neighbours
+    finest: float = 0.01  # pixels of noise that corners have at least: OpenCV finds none better
+    worth: float = 20  # values of a frame for which the noise of all counts in that of one, which has few of its own
+    far: float = 5.0  # times what is left of the median corner, of all and of its frame, that show a wrong corner
+    lags: int = 30  # frames, a second, after which errors of corners are alike no more
+    white: float = 0.03  # correlation that counts as none: four standard deviations of chance in 16,000 values
+    settled: float = 0.02  # largest change in pixels that ends a fit, a tenth of the usual noise
 
 
 LIMITS = Limits()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain, combinations
 
@@ -25,50 +25,32 @@ from percept_obs.film.adjustment import (
 )
 from percept_obs.film.board import Board
 from percept_obs.film.lens import FEWEST_CORNERS
-from percept_obs.film.sharpness import SHARE
+from percept_obs.film.sharpness import LIMITS as EDGES
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
 from percept_obs.studies.diagnosis import Finding
+from percept_obs.studies.diagnosis.causes import Cause
 
 
 @dataclass(frozen=True)
 class Limits:
     """From where on a fault of a film is named."""
 
-    # The corners must be e^5 = 150 times as likely with a fault, and a size must be 4 standard deviations from 0, which
-    # chance reaches in one of 16,000: of the films of many telephones, hardly one is accused wrongly.
-    clearly: float = 5.0
-    surely: float = 4.0
-
-    # A slow hand shows its faults over a second, 30 pictures.  Faults hide each other, so that the search is repeated
-    # with those corrected that were found, four times at most, each with eight linearisations at most.
-    fewest: int = 30
-    searches: int = 4
-    passes: int = 8
-
-    # Pixels that are neither explained nor noise, and pixels of noise, that make distances worse.
-    unexplained: float = 0.15
-    scatter: float = 1.0
-
-    # Distances are as uncertain as the focal length: 2 % are worth a word.  It is the camera's own up to 10 %, for
-    # cameras that are given are those of other pictures: autofocus and a crop of the film change as much.
-    unknown: float = 0.02
-    wrong: float = 0.1
-
-    # A board that fills less than 15 % of the longer side shows poses badly.
-    small: float = 0.15
-
-    # The camera shows distances if it goes 3 degrees around the board, or by 5 % of the distance towards it.
-    around: float = 3.0
-    towards: float = 0.05
-
-    # The frame rate varies if the times between pictures, nine in ten, differ by 20 % of their median.
-    uneven: float = 0.2
-
-    # Sharp edges are 2.5 pixels wide at most in nine pictures of ten; in pictures with a longer side than 1280 pixels,
-    # in which a lens shows no more, they are as much wider.
-    blurred: float = 2.5
-    long: float = 1280
+    clearly: float = 5.0  # logarithm by which corners are likelier with a fault: 150 times, for many sets are compared
+    surely: float = 4.0  # standard deviations of what else is named: chance reaches them once in 16,000 films
+    fewest: int = 30  # pictures with a pose: a second, in which a hand moves once
+    searches: int = 4  # for faults that hide each other, each search with those corrected that the last one found
+    passes: int = 8  # linearisations of a fit at most
+    unexplained: float = 0.15  # pixels that noise does not explain: as many as noise usually has
+    scatter: float = 1.0  # pixels of noise, five times the usual
+    unknown: float = 0.02  # relative deviation of the focal length, which every distance then has as well
+    wrong: float = 0.1  # relative difference from the camera's focal length: autofocus makes a few per cent
+    small: float = 0.15  # share of the picture's longer side under which a board shows poses badly
+    around: float = 3.0  # degrees that the camera must go around the board to show distances,
+    towards: float = 0.05  # or the share of the distance that it must go towards it
+    uneven: float = 0.2  # range of nine in ten times from picture to picture, over their median
+    blurred: float = 2.5  # pixels, in one picture of ten, that the edges of a sharp picture do not reach
+    long: float = 1280  # pixels of the longer side beyond which edges may be wider in proportion
 
 
 LIMITS = Limits()
@@ -92,13 +74,10 @@ class Faults:
 
 
 @dataclass(frozen=True)
-class Part:
-    """Fault that is fitted: its columns, and the size from which on it is worth naming."""
+class Fault(Cause):
+    """Fault that is fitted by some columns."""
 
-    key: str
     columns: tuple[int, ...]
-    smallest: float
-    sentence: Callable[[float], str]
 
     @property
     def own(self) -> list[int]:
@@ -106,26 +85,16 @@ class Part:
         return [column for column in self.columns if column != SINGLY]
 
 
-def _read(lines: str, first: str, last: str) -> Callable[[float], str]:
-    """Sentence for a shutter that reads some lines of a picture one after another."""
-    return lambda late: (
-        f"the {lines} of a picture are read one after another, from the {first if late > 0 else last} on, "
-        f"within {1e3 * abs(late):.3g} ms"
-    )
-
-
-def _shifted(size: float) -> str:
-    """Sentence for pictures that are stabilised."""
-    return f"the pictures are shifted against the lens, by about {abs(size):.2g} pixels, as by a stabilisation"
-
+READ = "of a picture are read one after another, from the {end} on, within {millis:.3g} ms"
+SHIFTED = "the pictures are shifted against the lens, by about {size:.2g} pixels, as by a stabilisation"
 
 PARTS = (
-    Part("rolling shutter", SHUTTER[:1], 2e-3, _read("columns", "left", "right")),
-    Part("rolling shutter", SHUTTER[1:], 2e-3, _read("rows", "top", "bottom")),
-    Part("board", SHAPE, 1e-3, lambda size: f"the board is bent or stretched, by about {1e3 * abs(size):.2g} mm"),
-    Part("focus", FOCUS, 5e-3, lambda size: f"the focal length changes, by about {100 * abs(size):.2g} %"),
-    Part("stabilisation", SHIFT, 3.0, _shifted),
-    Part("stabilisation", (*SHIFT, SINGLY), 3.0, _shifted),
+    Fault("rolling shutter", f"the columns {READ}", 2e-3, SHUTTER[:1], ends=("left", "right")),
+    Fault("rolling shutter", f"the rows {READ}", 2e-3, SHUTTER[1:], ends=("top", "bottom")),
+    Fault("board", "the board is bent or stretched, by about {millis:.2g} mm", 1e-3, SHAPE),
+    Fault("focus", "the focal length changes, by about {percents:.2g} %", 5e-3, FOCUS),
+    Fault("stabilisation", SHIFTED, 3.0, SHIFT),
+    Fault("stabilisation", SHIFTED, 3.0, (*SHIFT, SINGLY)),
 )
 
 CHOICES = (*chain.from_iterable(combinations(PARTS[:4], count) for count in range(5)), *((part,) for part in PARTS[4:]))
@@ -156,7 +125,7 @@ def find_faults(
         )
     rows, poses = rows[good], Poses(poses.time[good], poses.position[good], poses.orientation[good])
     given, state = start(corners[rows], board.points, np.array(size, dtype=float), camera, poses)
-    parts: tuple[Part, ...] = ()
+    parts: tuple[Fault, ...] = ()
     left = []
     for search in range(LIMITS.searches):  # at first at the given lens, for a wrong one may stand for a fault
         state, fit = adjusted(given, state, _columns(parts), passes=LIMITS.passes if search else 1)
@@ -167,7 +136,7 @@ def find_faults(
     sizes = {part: _size(given, state, fit, part, before) for part in PARTS}
     evidence = f"with all of these, {left[-1]:.2g} pixels are left of the corners and not {left[0]:.2g}"
     findings = [
-        Finding(part.key, part.sentence(size), evidence, size, deviation)
+        Finding(part.key, part.sentence(np.array([size])), evidence, size, deviation)
         for part, (size, deviation) in sizes.items()
         if part in before and abs(size) >= part.smallest
     ]
@@ -181,18 +150,18 @@ def find_faults(
     return Faults(tuple(findings), readout[:, 0], readout[:, 1], straight, fit.noise, fitted)
 
 
-def _columns(parts: tuple[Part, ...]) -> list[int]:
+def _columns(parts: tuple[Fault, ...]) -> list[int]:
     """Columns of the lens and of faults."""
     return [*LENS, *chain.from_iterable(part.columns for part in parts)]
 
 
-def _worth(fit: Fit, parts: tuple[Part, ...]) -> float:
+def _worth(fit: Fit, parts: tuple[Fault, ...]) -> float:
     """Logarithm of the corners' likelihood, less what each fault must add to it."""
     columns = _columns(parts)
     return fit.normal(columns).likelihood(columns) - LIMITS.clearly * len(parts)
 
 
-def _size(given: Corners, state: State, fit: Fit, part: Part, parts: tuple[Part, ...]) -> tuple[float, float]:
+def _size(given: Corners, state: State, fit: Fit, part: Fault, parts: tuple[Fault, ...]) -> tuple[float, float]:
     """Root mean square of a fault over time, with the sign that it has at first, and its standard deviation."""
     columns = _columns((*parts, part))
     normal, values = fit.normal(columns), state.own[:, part.own]
@@ -205,7 +174,7 @@ def _size(given: Corners, state: State, fit: Fit, part: Part, parts: tuple[Part,
     return math.copysign(size, values[0, 0]), math.sqrt(variance * (1 + max(fit.ratio, 0.0)))
 
 
-def _of_fit(state: State, fit: Fit, parts: tuple[Part, ...]) -> Iterator[Finding]:
+def _of_fit(state: State, fit: Fit, parts: tuple[Fault, ...]) -> Iterator[Finding]:
     """Findings of what the fit leaves, and of the focal length."""
     if fit.excess > LIMITS.unexplained and fit.sure > LIMITS.surely:
         said = f"something is not known: {fit.excess:.2g} pixels of the corners are neither explained nor noise"
@@ -263,7 +232,8 @@ def _of_blur(board: Board, given: Corners, fit: Fit, width: Array) -> Iterator[F
     begin, end = board.neighbours.T
     along = given.pixels[:, end] - given.pixels[:, begin]
     across = np.stack([-along[..., 1], along[..., 0]], axis=-1) / (np.linalg.norm(along, axis=-1, keepdims=True) + 1e-9)
-    speed = np.quantile(np.abs(((fit.speed[:, begin] + fit.speed[:, end]) / 2 * across).sum(axis=-1)), SHARE, axis=1)
+    speed = np.abs(((fit.speed[:, begin] + fit.speed[:, end]) / 2 * across).sum(axis=-1))
+    speed = np.quantile(speed, EDGES.share, axis=1)
     good = np.isfinite(width)
 
     def widened(speed: Array, soft: float, exposure: float) -> Array:

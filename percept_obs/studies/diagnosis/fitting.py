@@ -10,8 +10,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from percept_obs.compile import Array
+from percept_obs.recording.normal import Normal, less
 from percept_obs.studies.diagnosis.causes import CAUSES
-from percept_obs.studies.diagnosis.normal import Normal, less
 from percept_obs.studies.diagnosis.tracks import Track, across_of, guess, seen
 
 FINEST = 1e-4

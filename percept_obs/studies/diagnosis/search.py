@@ -18,41 +18,24 @@ from percept_obs.studies.diagnosis.tracks import Track, guess, numbers_of, path_
 class Limits:
     """From where on a mistake is named, and something is left to explain."""
 
-    # A wrong number is named if it is so many standard deviations from 0, and if the samples are e^10 times as likely
-    # with it: six numbers and eight mix-ups are tried, noise is correlated, and nobody should be accused wrongly.
-    surely: float = 5.0
-    clearly: float = 10.0
-
-    # What is left looks like noise up to 1.5 times the noise that is said, for few know their noise better; and if no
-    # noise is said, up to a correlation of 0.3 between residuals that follow each other, for errors of a motion last.
-    unexplained: float = 1.5
-    correlated: float = 0.3
-
-    # Where nothing explains everything, a mix-up is named if it leaves less than half of what is left without it, and
-    # less than a tenth of how far the samples spread: a fit that leaves more has failed.
-    worse: float = 2.0
-    most_left: float = 0.1
-
-    # Two explanations are alike if what they leave differs by less than 1 %, which is less than chance makes of it.
-    alike: float = 1.01
-
-    # Of the eight mix-ups, the two that explain most by themselves are tried together with wrong numbers.
-    tried: int = 2
-
-    # A track may show two points if three times as much is left of it as of the others.  The second one is looked for
-    # between 12 places, and then samples are given three times to the point that explains them better.  A point needs
-    # 20 values, ten samples of both image coordinates.
-    apart: float = 3.0
-    places: int = 12
-    rounds: int = 3
-    fewest: int = 20
-
-    # A sample is wild from 6 standard deviations on, which normal noise reaches once in 500 million samples.  Wild
-    # samples are named from three on and from 0.3 % of all; if more than 15 % are wild, they are no exceptions.
-    outlying: float = 6.0
-    few: int = 3
-    few_of_all: float = 0.003
-    most_wild: float = 0.15
+    surely: float = 5.0  # standard deviations of a number from 0: six are tried, and nobody is to be accused wrongly
+    clearly: float = 10.0  # logarithm by which samples are likelier with what is named: e^10 times, for the same reason
+    unexplained: float = 1.5  # times the noise that is said; less may be noise, which few know better than this
+    correlated: float = 0.3  # between residuals in a row: less may be noise that is not said, for white noise has none
+    worse: float = 2.0  # where nothing explains everything, times that must be left without a mix-up to name it
+    most_left: float = 0.1  # share of the samples' spread that it may leave then; a fit that leaves more has failed
+    alike: float = 1.01  # ratio of what two explanations leave: chance makes more than 1 % of a few hundred samples
+    tried: int = (
+        2  # mix-ups with which wrong numbers are fitted, those that explain most without, for most time goes there
+    )
+    apart: float = 3.0  # times what is left of the other tracks, which shows that a track may be of two points
+    places: int = 12  # at which the second point may begin or end at first: a part of the track between two shows it
+    rounds: int = 3  # times that each sample is then given to the point that explains it better
+    fewest: int = 20  # values from which a point is estimated: ten samples of both image coordinates
+    outlying: float = 6.0  # standard deviations of a wild sample; normal noise reaches them once in 500 million samples
+    few: int = 3  # wild samples that are worth naming,
+    few_of_all: float = 0.003  # and their share of all samples
+    most_wild: float = 0.15  # share of wild samples beyond which they are no exceptions, and none is left out
 
 
 LIMITS = Limits()
@@ -110,13 +93,14 @@ def search(tracks: tuple[Track, ...], noise: float | None) -> Found:
             else:
                 best = parted
     best = _trimmed(_fewest(best), noise)
-    explained, estimates, needed = _explained(best, noise), _estimates(best, keys), _needed(best, keys)
+    explained, needed = _explained(best, noise), _needed(best, keys)
+    estimates = {key: Estimate(np.zeros(each.size), math.inf, 0.0) for key, each in CAUSES.items()}
+    estimates |= best.estimates(keys)
     if switch is not None:
         needed = {"mismatch": (bare, ())} | needed
     alike = [each for each in screened[1:] if each.rms < LIMITS.alike * bare.rms + FINEST / 10]
-    hidden = [
-        key for key in CAUSES if key not in keys or not LIMITS.surely * estimates[key].deviation < CAUSES[key].usual
-    ]
+    told = [key for key in keys if LIMITS.surely * estimates[key].deviation < CAUSES[key].usual]
+    hidden = [key for key in CAUSES if key not in told]
     if explained and best.mix_up == "nothing":
         hidden += [MIX_UPS[each.mix_up].key for each in alike]
     not_told = tuple(key for key in dict.fromkeys(hidden) if key not in needed)
@@ -143,13 +127,7 @@ def _possible(tracks: Sequence[Track]) -> list[str]:
     rigid = all(np.abs(A + np.swapaxes(A, 1, 2)).max() <= 1e-6 * max(float(np.abs(A).max()), 1e-9) for A in motions)
     both = all(len(track.whole) for track in tracks)
     varying = not all(track.motion.signal and track.motion.signal.constant for track in tracks)
-    possible = {
-        OFFSET: varying,
-        BIAS: rigid,
-        DRIFT: rigid,
-        BEND: both,
-        SHUTTER: both and varying,
-    }
+    possible = {OFFSET: varying, BIAS: rigid, DRIFT: rigid, BEND: both, SHUTTER: both and varying}
     return [key for key in CAUSES if possible.get(key, True)]
 
 
@@ -182,10 +160,8 @@ def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> 
         return best
     better = sorted((each for each in others if each.typical < first.typical), key=lambda each: each.typical)
     for other in (_joint(each, keys) for each in better[: LIMITS.tried]):
-        moved = float(np.median([track.spread for track in other.tracks]))
-        if _explained(other, noise) or LIMITS.worse * other.typical < min(
-            best.typical, LIMITS.worse * LIMITS.most_left * moved
-        ):
+        most = LIMITS.most_left * float(np.median([track.spread for track in other.tracks]))
+        if _explained(other, noise) or other.typical < min(best.typical / LIMITS.worse, most):
             best = min(best, other, key=lambda each: (not _explained(each, noise), each.typical))
     return best
 
@@ -231,12 +207,6 @@ def _weight(key: str, estimate: Estimate) -> float:
     cause, size = CAUSES[key], float(np.linalg.norm(estimate.value))
     inside = float(np.abs(estimate.value).max()) < 0.98 * cause.largest
     return min(estimate.sure / LIMITS.surely, size / cause.smallest) * inside
-
-
-def _estimates(best: Fit, keys: Sequence[str]) -> dict[str, Estimate]:
-    """Every number by itself, beside the ones that were found."""
-    found = best.estimates(keys)
-    return {key: found.get(key, Estimate(np.zeros(cause.size), math.inf, 0.0)) for key, cause in CAUSES.items()}
 
 
 def _other_mix_ups(best: Fit) -> tuple[str, ...]:
