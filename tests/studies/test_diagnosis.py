@@ -163,9 +163,8 @@ def test_what_none_of_the_mistakes_explains_is_said():
 
 
 def test_single_wild_samples_are_left_out_and_a_smooth_track_has_none():
-    exact = record(scenarios.ma2005_eq35(), 4, Camera(0.05)).outputs
-    assert not spikes(exact).any()
-    wild = exact.copy()
+    wild = record(scenarios.ma2005_eq35(), 4, Camera(0.05)).outputs.copy()
+    assert not spikes(wild).any()
     wild[20] += 0.3
     assert np.flatnonzero(spikes(wild)[:, 0]).tolist() == [20]
 
@@ -182,20 +181,19 @@ def test_pixels_are_told_by_their_size():
 
 
 def test_a_constant_motion_shows_no_offset():
-    steady = Scenario(
-        "steady",
-        rigid(camera_angular_velocity=[0, -0.1, 0], camera_velocity=[0.3, 0.1, 0]),
-        (0.2, 0.1, 3),
-        5,
-        pinhole(),
-    )
-    found = diagnose(record(steady))
+    steady = rigid(camera_angular_velocity=[0, -0.1, 0], camera_velocity=[0.3, 0.1, 0])
+    found = diagnose(record(Scenario("steady", steady, (0.2, 0.1, 3), 5, pinhole())))
     assert "time offset" in found.not_told
     assert found.named == "nothing"
 
 
-def test_what_makes_no_sense_is_refused():
+def test_what_makes_no_sense_is_refused_and_a_short_track_left_out():
+    short = BLIND[0].between(0, 0.2)
     with pytest.raises(ValueError, match="there is no recording"):
         diagnose([])
-    with pytest.raises(ValueError, match="20 are needed"):
-        diagnose(BLIND[0].between(0, 0.2))
+    with pytest.raises(ValueError, match=r"20 are needed: give longer poses or longer tracks"):
+        diagnose(short)
+    whole = record(scenarios.ma2005_eq35(), 3, Camera(0.05))
+    found = diagnose([whole, short])
+    assert (found.looked_at, found.too_short) == (1, 1)
+    assert "1 were left out" in found.sentence
