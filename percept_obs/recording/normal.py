@@ -38,7 +38,7 @@ class Normal:
     usual: Array
     more: float = 0.0
 
-    def solved(self, causes: Sequence[object]) -> tuple[Flags, Array, Array]:
+    def solved(self, causes: Sequence[int] | Sequence[str]) -> tuple[Flags, Array, Array]:
         """Return which numbers belong to some causes, their steps from each part, all others being 0, and covariance.
 
         The sum of the steps explains the samples best.  A number that is not told has an infinite variance.
@@ -54,7 +54,7 @@ class Normal:
         covariance[lost, lost] = np.inf
         return own, steps, np.asarray(covariance)
 
-    def likelihood(self, causes: Sequence[object]) -> float:
+    def likelihood(self, causes: Sequence[int] | Sequence[str]) -> float:
         """Logarithm of the likelihood with some causes, the mean over all numbers that are usual."""
         own, steps, covariance = self.solved(causes)
         narrower = np.linalg.slogdet(covariance)[1] / 2 - np.log(self.usual[own]).sum()
