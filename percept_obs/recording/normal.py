@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from percept_obs.compile import Array, Flags
 
@@ -32,7 +34,7 @@ class Normal:
     its `usual` standard deviation.  `more` is what the eliminated unknowns add to the likelihood's logarithm.
     """
 
-    owner: Array
+    owner: NDArray[Any]
     matrix: Array
     scores: Array
     usual: Array
