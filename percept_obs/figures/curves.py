@@ -25,7 +25,11 @@ NARROWEST = 0.4
 
 
 def limits(firm: ArrayLike, loose: ArrayLike = (), reach: float = 2.0) -> tuple[float, float]:
-    """Return the ends of an axis that holds all firm values, and loose ones at most `reach` spans away from them."""
+    """Return the ends of an axis that shows all firm values, which must be seen, and of the loose ones those nearby.
+
+    A true course is firm, an estimate that may run away is loose: it is shown up to `reach` times the range of the firm
+    values beyond them.
+    """
     firm, loose = describe.finite(firm), describe.finite(loose)
     low, high = (firm.min(), firm.max()) if firm.size else (0.0, 1.0)
     constant = high - low <= 1e-3 * abs(high)
@@ -37,7 +41,7 @@ def limits(firm: ArrayLike, loose: ArrayLike = (), reach: float = 2.0) -> tuple[
 
 
 def linear(ax: Axes, firm: Array, loose: Array, what: str, reach: float = 2.0) -> str:
-    """Fit the axis to the firm values, and say how many of the loose ones it leaves out."""
+    """Fit the axis to the firm values as `limits` does, and say how many of the loose ones it leaves out."""
     ends = limits(firm, loose, reach)
     ax.set_ylim(*ends)
     return _left_out(loose, ends, what)

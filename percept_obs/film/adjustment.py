@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from percept_obs.compile import Array, Flags, Indices
+from percept_obs.compile import Array, Flags
+from percept_obs.recording.normal import Normal, less
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
 from percept_obs.validation import needed
@@ -27,23 +28,25 @@ SINGLY = 18
 USUAL = np.array([0.1, 3e-3, 0.03, 0.03, 0.02, 0.02, 0.3, 0.2, 2e-3, 2e-3, 0.1, *[2e-3] * 4, 0.03, 20, 20])
 """Usual sizes of the columns, their standard deviations before anything is seen."""
 
-JITTER = 10.0
-"""Usual shift of one picture against its neighbours in pixels."""
+ALONE = 6
+"""First columns, focal lengths to read-out, that each frame has alone where the corners' noise is estimated: what is
+left then is noise whatever the fault, since nothing but noise changes so much from corner to corner."""
 
-ALONE = POSE + 6
-"""Pose and columns, focal lengths to read-out, that each frame has alone where the corners' noise is estimated."""
 
-FINEST, WORTH = 0.01, 20
-"""Least noise in pixels, and number of a frame's values that the noise of all frames counts for in that of one."""
+@dataclass(frozen=True)
+class Limits:
+    """What is known of corners before a film is seen, and when a fit ends."""
 
-FAR = 5.0
-"""Medians of what is left, of all corners and of a frame's, beyond which a corner is left out."""
+    jitter: float = 10.0  # pixels by which a stabilisation usually shifts one picture against its neighbours
+    finest: float = 0.01  # pixels of noise that corners have at least: OpenCV finds none better
+    worth: float = 20  # values of a frame for which the noise of all counts in that of one, which has few of its own
+    far: float = 5.0  # times what is left of the median corner, of all and of its frame, that show a wrong corner
+    lags: int = 30  # frames, a second, after which errors of corners are alike no more
+    white: float = 0.03  # correlation that counts as none: four standard deviations of chance in 16,000 values
+    settled: float = 0.02  # largest change in pixels that ends a fit, a tenth of the usual noise
 
-LAGS, WHITE = 30, 0.03
-"""Frames over which noise may be correlated, and the correlation that counts as none."""
 
-PASSES, SETTLED = 8, 0.02
-"""Linearisations at most, and the largest change in pixels that ends them."""
+LIMITS = Limits()
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,28 +106,6 @@ def _hats(time: Array, spacing: float, most: int) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Normal:
-    """Normal equations of the numbers that frames share, `owner` being the columns of these, without the poses."""
-
-    owner: Indices
-    matrix: Array
-    score: Array
-    more: float
-
-    def solved(self, columns: Sequence[int]) -> tuple[Flags, Array, Array]:
-        """Return which numbers belong to some columns, their values with all others 0, and their covariance."""
-        own = np.isin(self.owner, columns)
-        covariance = np.asarray(np.linalg.inv(self.matrix[np.ix_(own, own)]), dtype=float)
-        return own, covariance @ self.score[own], covariance
-
-    def likelihood(self, columns: Sequence[int]) -> float:
-        """Logarithm of the corners' likelihood, the mean over all numbers of the usual sizes."""
-        own, values, covariance = self.solved(columns)
-        narrower = np.linalg.slogdet(covariance)[1] / 2 - np.log(USUAL[self.owner[own]]).sum()
-        return float(self.score[own] @ values / 2 + narrower + self.more)
-
-
-@dataclass(frozen=True, eq=False)
 class Fit:
     """Normal equations, the second ones for pictures of which each is shifted by itself, and pixels that are left.
 
@@ -155,11 +136,11 @@ class Fit:
         return self.normals[SINGLY in columns]
 
 
-def adjusted(corners: Corners, state: State, columns: Sequence[int], passes: int = PASSES) -> tuple[State, Fit]:
+def adjusted(corners: Corners, state: State, columns: Sequence[int], passes: int) -> tuple[State, Fit]:
     """Return poses and columns that explain the corners best, all other columns being 0."""
     for _ in range(passes):
         state, fit, change = _step(corners, state, columns)
-        if change < SETTLED:
+        if change < LIMITS.settled:
             break
     return state, fit
 
@@ -170,38 +151,40 @@ def _step(corners: Corners, state: State, columns: Sequence[int]) -> tuple[State
 
     (K, n), even = corners.seen.shape, corners.even
     rows, moved, speed = _rows(corners, state)
-    Q, U = np.linalg.qr((rows * state.used[..., None, None]).reshape(K, 2 * n, -1))
-    free = np.maximum(2 * state.used.sum(axis=1) - ALONE, 0) * even
-    rest = (Q[..., ALONE:] @ U[:, ALONE:, -1:])[..., 0] * (free > 0)[:, None]
-    noise = max(float((rest**2).sum() / free.sum()), FINEST**2)
-    each = ((rest**2).sum(axis=1) + WORTH * noise) / (free + WORTH)
+    used = (rows * state.used[..., None, None]).reshape(K, 2 * n, -1)
+    poses, shared = used[..., :POSE], less(used[..., POSE:], used[..., :POSE])
+    A, y = shared[..., :-1], shared[..., -1:]
+    free = np.maximum(2 * state.used.sum(axis=1) - POSE - ALONE, 0) * even
+    rest = less(y, A[..., :ALONE])[..., 0] * (free > 0)[:, None]
+    noise = max(float((rest**2).sum() / free.sum()), LIMITS.finest**2)
+    each = ((rest**2).sum(axis=1) + LIMITS.worth * noise) / (free + LIMITS.worth)
     weight = (even / each)[:, None, None]
-    A, y = U[:, POSE:, POSE:-1], U[:, POSE:, -1:]
     counted = np.swapaxes(A, 1, 2) * weight / _in_a_row(rest / np.sqrt(each)[:, None])
     M = counted @ A
     m = (counted @ y + M @ state.own[..., None])[..., 0]
-    inner = np.linalg.inv(M[:, 16:, 16:] + np.eye(2) / JITTER**2)
+    inner = np.linalg.inv(M[:, 16:, 16:] + np.eye(2) / LIMITS.jitter**2)
     normals = _normal(corners.bases, M, m), _shifted(corners.bases, M, m, inner)
     own = np.zeros_like(state.own)
-    chosen, values, _ = normals[SINGLY in columns].solved(columns)
-    for j, column in enumerate(corners.bases):
-        if j in columns:
-            own[:, j] = column @ values[normals[0].owner[chosen] == j]
+    normal = normals[SINGLY in columns]
+    chosen, values, _ = normal.solved(columns)
+    for j in {*columns} - {SINGLY}:
+        own[:, [j]] = corners.bases[j] @ values[normal.owner[chosen] == j]
     if SINGLY in columns:
         own[:, 16:] += (inner @ (m[..., None] - M @ own[..., None])[:, 16:])[..., 0]
     step = (own - state.own)[..., None]
-    pose = np.linalg.pinv(U[:, :POSE, :POSE]) @ (U[:, :POSE, -1:] - U[:, :POSE, POSE:-1] @ step)
+    pose = np.linalg.pinv(poses) @ (used[..., -1:] - used[..., POSE:-1] @ step)
     turn = Rotation.from_rotvec(pose[:, :3, 0]).as_matrix()
     change = (rows[..., :-1] @ np.concatenate([pose, step], axis=1)[:, None])[..., 0]
     left = rows[..., -1] - change
     size = np.where(corners.seen, np.linalg.norm(left, axis=-1), np.nan)
-    used = corners.seen & (size <= FAR * np.fmax(np.nanmedian(size), np.nanmedian(size, axis=1))[:, None])
-    count = (ALONE - POSE - 2 * (SINGLY in columns)) * int(even.sum()) - len(values)
-    ratio = float(((y - A @ step)[:, : ALONE - POSE] ** 2 * weight).sum()) / count - 1
-    rms = float(np.sqrt(np.mean(left[used] ** 2)))
+    near = corners.seen & (size <= LIMITS.far * np.fmax(np.nanmedian(size), np.nanmedian(size, axis=1))[:, None])
+    count = (ALONE - 2 * (SINGLY in columns)) * int(even.sum()) - len(values)
+    after = y - A @ step  # of what is left, frames with a lens of their own would explain the difference
+    ratio = float(((after**2 - less(after, A[..., :ALONE]) ** 2) * weight).sum()) / count - 1
+    rms = float(np.sqrt(np.mean(left[near] ** 2)))
     fit = Fit(normals, math.sqrt(noise), rms, ratio, count, moved, speed)
-    after = State(turn @ state.R, (turn @ state.p[..., None] + pose[:, 3:])[..., 0], own, used)
-    return after, fit, float(np.abs(change[used]).max())
+    moved_on = State(turn @ state.R, (turn @ state.p[..., None] + pose[:, 3:])[..., 0], own, near)
+    return moved_on, fit, float(np.abs(change[near]).max())
 
 
 def _rows(corners: Corners, state: State) -> tuple[Array, Array, Array]:
@@ -240,8 +223,9 @@ def _rows(corners: Corners, state: State) -> tuple[Array, Array, Array]:
 
 def _in_a_row(white: Array) -> float:
     """Number of frames in a row whose noise counts as one, for it is correlated; 1 for white noise."""
-    products = np.array([(white[k:] * white[: len(white) - k]).sum() for k in range(min(LAGS, len(white) - 1) + 1)])
-    end = int(np.argmax(np.append(products, 0) <= WHITE * products[0]))
+    lags = range(min(LIMITS.lags, len(white) - 1) + 1)
+    products = np.array([(white[k:] * white[: len(white) - k]).sum() for k in lags])
+    end = int(np.argmax(np.append(products, 0) <= LIMITS.white * products[0]))
     return float(1 + 2 * products[1:end].sum() / max(products[0], np.finfo(float).tiny))
 
 
@@ -249,12 +233,13 @@ def _normal(bases: Sequence[Array], M: Array, m: Array, more: float = 0.0) -> No
     """Normal equations of the film from those of its frames, shapes (K, 18, 18) and (K, 18)."""
     owner = np.repeat(np.arange(len(bases)), [base.shape[1] for base in bases])
     matrix = np.block([[a.T @ (M[:, i, j, None] * b) for j, b in enumerate(bases)] for i, a in enumerate(bases)])
-    score = np.concatenate([base.T @ m[:, i] for i, base in enumerate(bases)])
-    return Normal(owner, matrix + np.diag(USUAL[owner] ** -2), score, more)
+    score = np.concatenate([base.T @ m[:, [i]] for i, base in enumerate(bases)])
+    return Normal(owner, matrix, score, USUAL[owner], more)
 
 
 def _shifted(bases: Sequence[Array], M: Array, m: Array, inner: Array) -> Normal:
     """Normal equations without the shift of each single picture, of which `inner` is the covariance."""
     across, shift = M[:, :, 16:] @ inner, m[:, 16:, None]
-    gain = float((np.swapaxes(shift, 1, 2) @ inner @ shift).sum() + np.linalg.slogdet(inner / JITTER**2)[1].sum())
+    narrower = np.linalg.slogdet(inner / LIMITS.jitter**2)[1].sum()
+    gain = float((np.swapaxes(shift, 1, 2) @ inner @ shift).sum() + narrower)
     return _normal(bases, M - across @ M[:, 16:], m - (across @ shift)[..., 0], gain / 2)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain, combinations
 
@@ -13,7 +13,6 @@ from percept_obs.compile import Array
 from percept_obs.film.adjustment import (
     FOCUS,
     LENS,
-    PASSES,
     SHAPE,
     SHIFT,
     SHUTTER,
@@ -26,37 +25,35 @@ from percept_obs.film.adjustment import (
 )
 from percept_obs.film.board import Board
 from percept_obs.film.lens import FEWEST_CORNERS
-from percept_obs.film.sharpness import SHARE
+from percept_obs.film.sharpness import LIMITS as EDGES
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
 from percept_obs.studies.diagnosis import Finding
+from percept_obs.studies.diagnosis.causes import Cause
 
-CLEARLY, SURELY = 5.0, 4.0
-"""Logarithm by which corners are likelier with a fault that is named, and standard deviations of what else is named."""
 
-FEWEST = 30
-"""Pictures with a pose that are needed."""
+@dataclass(frozen=True)
+class Limits:
+    """From where on a fault of a film is named."""
 
-ROUNDS = 4
-"""Searches at most for the faults that explain the corners best, each with the last one's corrected."""
+    clearly: float = 5.0  # logarithm by which corners are likelier with a fault: 150 times, for many sets are compared
+    surely: float = 4.0  # standard deviations of what else is named: chance reaches them once in 16,000 films
+    fewest: int = 30  # pictures with a pose: a second, in which a hand moves once
+    searches: int = 4  # for faults that hide each other, each search with those corrected that the last one found
+    passes: int = 8  # linearisations of a fit at most
+    unexplained: float = 0.15  # pixels that noise does not explain: as many as noise usually has
+    scatter: float = 1.0  # pixels of noise, five times the usual
+    unknown: float = 0.02  # relative deviation of the focal length, which every distance then has as well
+    wrong: float = 0.1  # relative difference from the camera's focal length: autofocus makes a few per cent
+    small: float = 0.15  # share of the picture's longer side under which a board shows poses badly
+    around: float = 3.0  # degrees that the camera must go around the board to show distances,
+    towards: float = 0.05  # or the share of the distance that it must go towards it
+    uneven: float = 0.2  # range of nine in ten times from picture to picture, over their median
+    blurred: float = 2.5  # pixels, in one picture of ten, that the edges of a sharp picture do not reach
+    long: float = 1280  # pixels of the longer side beyond which edges may be wider in proportion
 
-UNEXPLAINED, SCATTER = 0.15, 1.0
-"""Pixels that noise does not explain, and pixels of noise, that are worth naming."""
 
-UNKNOWN, WRONG = 0.02, 0.1
-"""Relative deviation of the focal length, and its difference from the camera's, that are worth naming."""
-
-SMALL = 0.15
-"""Share of the picture's longer side under which a board is small."""
-
-AROUND, TOWARDS = 3.0, 0.05
-"""Degrees that the camera must go around the board, or share of the distance that it must go towards it."""
-
-UNEVEN = 0.2
-"""Range of the times from picture to picture, over their median, that is worth naming."""
-
-BLURRED, LONG = 2.5, 1280
-"""Width of edges in pixels, in one picture of ten, that is worth naming; more in pictures longer than this."""
+LIMITS = Limits()
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,13 +74,10 @@ class Faults:
 
 
 @dataclass(frozen=True)
-class Part:
-    """Fault that is fitted: its columns, and the size from which on it is worth naming."""
+class Fault(Cause):
+    """Fault that is fitted by some columns."""
 
-    key: str
     columns: tuple[int, ...]
-    smallest: float
-    sentence: Callable[[float], str]
 
     @property
     def own(self) -> list[int]:
@@ -91,26 +85,16 @@ class Part:
         return [column for column in self.columns if column != SINGLY]
 
 
-def _read(lines: str, first: str, last: str) -> Callable[[float], str]:
-    """Sentence for a shutter that reads some lines of a picture one after another."""
-    return lambda late: (
-        f"the {lines} of a picture are read one after another, from the {first if late > 0 else last} on, "
-        f"within {1e3 * abs(late):.3g} ms"
-    )
-
-
-def _shifted(size: float) -> str:
-    """Sentence for pictures that are stabilised."""
-    return f"the pictures are shifted against the lens, by about {abs(size):.2g} pixels, as by a stabilisation"
-
+READ = "of a picture are read one after another, from the {end} on, within {millis:.3g} ms"
+SHIFTED = "the pictures are shifted against the lens, by about {size:.2g} pixels, as by a stabilisation"
 
 PARTS = (
-    Part("rolling shutter", SHUTTER[:1], 2e-3, _read("columns", "left", "right")),
-    Part("rolling shutter", SHUTTER[1:], 2e-3, _read("rows", "top", "bottom")),
-    Part("board", SHAPE, 1e-3, lambda size: f"the board is bent or stretched, by about {1e3 * abs(size):.2g} mm"),
-    Part("focus", FOCUS, 5e-3, lambda size: f"the focal length changes, by about {100 * abs(size):.2g} %"),
-    Part("stabilisation", SHIFT, 3.0, _shifted),
-    Part("stabilisation", (*SHIFT, SINGLY), 3.0, _shifted),
+    Fault("rolling shutter", f"the columns {READ}", 2e-3, SHUTTER[:1], ends=("left", "right")),
+    Fault("rolling shutter", f"the rows {READ}", 2e-3, SHUTTER[1:], ends=("top", "bottom")),
+    Fault("board", "the board is bent or stretched, by about {millis:.2g} mm", 1e-3, SHAPE),
+    Fault("focus", "the focal length changes, by about {percents:.2g} %", 5e-3, FOCUS),
+    Fault("stabilisation", SHIFTED, 3.0, SHIFT),
+    Fault("stabilisation", SHIFTED, 3.0, (*SHIFT, SINGLY)),
 )
 
 CHOICES = (*chain.from_iterable(combinations(PARTS[:4], count) for count in range(5)), *((part,) for part in PARTS[4:]))
@@ -134,17 +118,17 @@ def find_faults(
     """
     rows = np.searchsorted(time, poses.time)
     good = np.isfinite(corners[rows]).all(axis=-1).sum(axis=1) >= FEWEST_CORNERS
-    if good.sum() < FEWEST:
+    if good.sum() < LIMITS.fewest:
         raise ValueError(
-            f"{good.sum()} pictures with a pose show {FEWEST_CORNERS} corners of the board, and {FEWEST} are needed to "
-            "find faults: film for longer, with the board in the picture"
+            f"{good.sum()} pictures with a pose show {FEWEST_CORNERS} corners of the board, and {LIMITS.fewest} are "
+            "needed to find faults: film for longer, with the board in the picture"
         )
     rows, poses = rows[good], Poses(poses.time[good], poses.position[good], poses.orientation[good])
     given, state = start(corners[rows], board.points, np.array(size, dtype=float), camera, poses)
-    parts: tuple[Part, ...] = ()
+    parts: tuple[Fault, ...] = ()
     left = []
-    for search in range(ROUNDS):  # at first at the given lens, for a wrong one may stand for a fault
-        state, fit = adjusted(given, state, _columns(parts), passes=PASSES if search else 1)
+    for search in range(LIMITS.searches):  # at first at the given lens, for a wrong one may stand for a fault
+        state, fit = adjusted(given, state, _columns(parts), passes=LIMITS.passes if search else 1)
         left.append(fit.left)
         before, parts = parts, max(CHOICES, key=lambda each: _worth(fit, each))
         if search and parts == before:
@@ -152,7 +136,7 @@ def find_faults(
     sizes = {part: _size(given, state, fit, part, before) for part in PARTS}
     evidence = f"with all of these, {left[-1]:.2g} pixels are left of the corners and not {left[0]:.2g}"
     findings = [
-        Finding(part.key, part.sentence(size), evidence, size, deviation)
+        Finding(part.key, part.sentence(np.array([size])), evidence, size, deviation)
         for part, (size, deviation) in sizes.items()
         if part in before and abs(size) >= part.smallest
     ]
@@ -166,18 +150,18 @@ def find_faults(
     return Faults(tuple(findings), readout[:, 0], readout[:, 1], straight, fit.noise, fitted)
 
 
-def _columns(parts: tuple[Part, ...]) -> list[int]:
+def _columns(parts: tuple[Fault, ...]) -> list[int]:
     """Columns of the lens and of faults."""
     return [*LENS, *chain.from_iterable(part.columns for part in parts)]
 
 
-def _worth(fit: Fit, parts: tuple[Part, ...]) -> float:
+def _worth(fit: Fit, parts: tuple[Fault, ...]) -> float:
     """Logarithm of the corners' likelihood, less what each fault must add to it."""
     columns = _columns(parts)
-    return fit.normal(columns).likelihood(columns) - CLEARLY * len(parts)
+    return fit.normal(columns).likelihood(columns) - LIMITS.clearly * len(parts)
 
 
-def _size(given: Corners, state: State, fit: Fit, part: Part, parts: tuple[Part, ...]) -> tuple[float, float]:
+def _size(given: Corners, state: State, fit: Fit, part: Fault, parts: tuple[Fault, ...]) -> tuple[float, float]:
     """Root mean square of a fault over time, with the sign that it has at first, and its standard deviation."""
     columns = _columns((*parts, part))
     normal, values = fit.normal(columns), state.own[:, part.own]
@@ -190,19 +174,19 @@ def _size(given: Corners, state: State, fit: Fit, part: Part, parts: tuple[Part,
     return math.copysign(size, values[0, 0]), math.sqrt(variance * (1 + max(fit.ratio, 0.0)))
 
 
-def _of_fit(state: State, fit: Fit, parts: tuple[Part, ...]) -> Iterator[Finding]:
+def _of_fit(state: State, fit: Fit, parts: tuple[Fault, ...]) -> Iterator[Finding]:
     """Findings of what the fit leaves, and of the focal length."""
-    if fit.excess > UNEXPLAINED and fit.sure > SURELY:
+    if fit.excess > LIMITS.unexplained and fit.sure > LIMITS.surely:
         said = f"something is not known: {fit.excess:.2g} pixels of the corners are neither explained nor noise"
         yield Finding("unknown", said, f"the noise is {fit.noise:.2g} pixels", fit.excess, fit.excess / fit.sure)
-    if fit.noise > SCATTER:
+    if fit.noise > LIMITS.scatter:
         yield Finding("noise", f"the corners scatter by {fit.noise:.2g} pixels", "in single pictures", fit.noise)
     columns = _columns(parts)
     more, deviation = float(state.own[0, 0]), math.sqrt(fit.normal(columns).solved(columns)[2][0, 0])
-    if abs(more) > max(WRONG, SURELY * deviation):
+    if abs(more) > max(LIMITS.wrong, LIMITS.surely * deviation):
         said = f"the focal length is {1 + more:.3f} times the camera's"
         yield Finding("lens", said, "all pictures together say so", 1 + more, deviation)
-    if deviation > UNKNOWN:
+    if deviation > LIMITS.unknown:
         said = f"the focal length, and so every distance, is known to {100 * deviation:.2g} % only"
         yield Finding("focal length", said, "the board was not seen from the side enough", 1 + more, deviation)
 
@@ -212,7 +196,7 @@ def _of_times(time: Array) -> Iterator[Finding]:
     steps = np.diff(time)
     low, middle, high = 1e3 * np.quantile(steps, [0.05, 0.5, 0.95])
     again = int((steps <= 0).sum())
-    if again or high - low > UNEVEN * middle:
+    if again or high - low > LIMITS.uneven * middle:
         evidence = f"they are {low:.3g} to {high:.3g} ms apart, and {again} are no later than the one before"
         yield Finding("frame rate", "the frame rate varies", evidence, float((high - low) / middle))
 
@@ -221,7 +205,7 @@ def _of_path(given: Corners, state: State) -> Iterator[Finding]:
     """Findings of a small board and of a path that shows no distances."""
     seen = np.where(given.seen[..., None], given.pixels, np.nan)
     share = float(np.median((np.nanmax(seen, axis=1) - np.nanmin(seen, axis=1)).max(axis=1)) / given.size.max())
-    if share < SMALL:
+    if share < LIMITS.small:
         evidence = f"its corners fill {100 * share:.2g} % of the longer side; come nearer, or print a larger one"
         yield Finding("small board", "the board is small in the picture", evidence, share)
     away = -np.einsum("kji,kj->ki", state.R, state.p) - given.places.mean(axis=0)
@@ -230,9 +214,9 @@ def _of_path(given: Corners, state: State) -> Iterator[Finding]:
     middle = rays.mean(axis=0) / np.linalg.norm(rays.mean(axis=0))
     around = 2 * math.degrees(np.quantile(np.arccos(np.minimum(rays @ middle, 1)), 0.95))
     towards = float(np.ptp(np.quantile(far, [0.05, 0.95])) / np.median(far))
-    if around < AROUND:
-        key = "no parallax" if towards < TOWARDS else "along the axis"
-        said = "the camera hardly moves" if towards < TOWARDS else "the camera moves along its optical axis only"
+    if around < LIMITS.around:
+        key = "no parallax" if towards < LIMITS.towards else "along the axis"
+        said = "the camera hardly moves" if towards < LIMITS.towards else "the camera moves along its optical axis only"
         evidence = f"it goes {around:.2g} degrees around the board and {100 * towards:.2g} % of the distance towards it"
         yield Finding(key, f"{said}, which shows distances badly", evidence, around)
 
@@ -243,12 +227,13 @@ def _of_blur(board: Board, given: Corners, fit: Fit, width: Array) -> Iterator[F
     from scipy.special import erf
 
     wide = float(np.nanquantile(width, 0.9)) if np.isfinite(width).any() else math.nan
-    if not wide > BLURRED * max(1.0, given.size.max() / LONG):
+    if not wide > LIMITS.blurred * max(1.0, given.size.max() / LIMITS.long):
         return
     begin, end = board.neighbours.T
     along = given.pixels[:, end] - given.pixels[:, begin]
     across = np.stack([-along[..., 1], along[..., 0]], axis=-1) / (np.linalg.norm(along, axis=-1, keepdims=True) + 1e-9)
-    speed = np.quantile(np.abs(((fit.speed[:, begin] + fit.speed[:, end]) / 2 * across).sum(axis=-1)), SHARE, axis=1)
+    speed = np.abs(((fit.speed[:, begin] + fit.speed[:, end]) / 2 * across).sum(axis=-1))
+    speed = np.quantile(speed, EDGES.share, axis=1)
     good = np.isfinite(width)
 
     def widened(speed: Array, soft: float, exposure: float) -> Array:
@@ -257,6 +242,6 @@ def _of_blur(board: Board, given: Corners, fit: Fit, width: Array) -> Iterator[F
 
     (_, exposure), spread = curve_fit(widened, speed[good], width[good], (0.7, 0.005), bounds=(1e-4, [50, 0.1]))
     evidence = f"in one picture of ten they are over {wide:.2g} pixels wide"
-    if exposure > SURELY * math.sqrt(spread[1, 1]):
+    if exposure > LIMITS.surely * math.sqrt(spread[1, 1]):
         evidence += f", as by an exposure of {1e3 * exposure:.2g} ms; more light helps"
     yield Finding("blur", "the edges are blurred", evidence, wide)

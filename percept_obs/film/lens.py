@@ -14,23 +14,21 @@ from percept_obs.recording.poses import Poses
 FEWEST_CORNERS = 8
 """Corners of the board that a picture shows at least, for a pose."""
 
-ALIKE = 1.5
-"""Ratio of two poses' errors up to which either may be true."""
 
-UNSURE = 0.01
-"""Standard deviation of the principal point, over the size of the picture, from which on it is taken as the middle."""
+@dataclass(frozen=True)
+class Limits:
+    """What corners must tell of a lens to be believed."""
 
-UNSURE_BEND = 0.02
-"""Standard deviation of what k2 changes in the corner of the picture, relative, from which on there is no k2."""
+    alike: float = 1.5  # ratio of two poses' errors up to which either may be true: a small plane looks alike from both
+    unsure: float = 0.01  # deviation of the principal point, over the picture's size, from which on the middle is taken
+    unsure_bend: float = 0.02  # relative deviation of what k2 changes in the corner, from which on there is no k2
+    folded: float = 0.1  # least slope of a lens up to the corner; below it no direction may be seen there
+    far: float = 5.0  # medians of the corners' errors beyond which one is left out
+    trims: int = 3  # times that the lens is found, each without the corners that were far off the last one
+    most_views: int = 40  # pictures from which the lens is found, as different as there are: more tell little
 
-FOLDED = 0.1
-"""Least slope of a lens up to the corner of the picture; below it no direction may be seen there."""
 
-FAR, TRIMS = 5.0, 3
-"""Medians of the corners' errors beyond which one is left out, and how often the lens is found."""
-
-MOST_VIEWS = 40
-"""Pictures from which the lens is found, as different as there are."""
+LIMITS = Limits()
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,15 +63,15 @@ def find_lens(corners: Array, places: Array, size: tuple[int, int]) -> Lens:
     plain = cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST  # more is not told by a small board
     middle, flat = cv2.CALIB_FIX_PRINCIPAL_POINT, cv2.CALIB_FIX_K2
     fixed = [0, flat, middle, middle | flat, middle | flat | cv2.CALIB_FIX_K1]
-    for _ in range(TRIMS):
+    for _ in range(LIMITS.trims):
         for more in fixed:
             flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO | plain | more
             matrix, lens, spread, off = _calibrated(pixels, places, size, start, flags)
             corner = float(np.hypot(*size)) / 2 / matrix[1, 1]
-            told = spread[2:4].max() < UNSURE * max(size) and spread[5] * corner**4 < UNSURE_BEND
+            told = spread[2:4].max() < LIMITS.unsure * max(size) and spread[5] * corner**4 < LIMITS.unsure_bend
             if told and reaches(lens[:2], corner):
                 break
-        pixels = np.where((off < FAR * np.nanmedian(off))[..., None], pixels, np.nan)
+        pixels = np.where((off < LIMITS.far * np.nanmedian(off))[..., None], pixels, np.nan)
     camera = PixelCamera((matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2]), size, lens[:4].tolist())
     alike = np.sqrt(2 * np.isfinite(off).sum(axis=1).mean())  # the errors in one view are no independent ones
     return Lens(camera, float(alike * spread[1] / matrix[1, 1]))
@@ -88,7 +86,7 @@ def reaches(lens: Array, corner: float) -> bool:
     radius = np.linspace(0, 4 * corner, 1000)
     seen, slope = radius * (1 + k1 * radius**2 + k2 * radius**4), 1 + 3 * k1 * radius**2 + 5 * k2 * radius**4
     beyond = np.flatnonzero(seen >= corner)
-    return bool(len(beyond) and slope[: beyond[0] + 1].min() > FOLDED)
+    return bool(len(beyond) and slope[: beyond[0] + 1].min() > LIMITS.folded)
 
 
 def _calibrated(
@@ -112,14 +110,14 @@ def _calibrated(
 
 
 def _different(corners: Array) -> list[int]:
-    """Return pictures with most of the corners that differ most from each other, at most `MOST_VIEWS`."""
+    """Return pictures with most of the corners that differ most from each other, at most `most_views`."""
     count = np.isfinite(corners).all(axis=2).sum(axis=1)
     rich = np.flatnonzero(count >= max(FEWEST_CORNERS, 0.7 * count.max()))
     filled = np.where(np.isfinite(corners[rich]), corners[rich], np.nanmean(corners[rich], axis=1, keepdims=True))
     shape = filled.reshape(len(rich), -1)
     chosen = [0]
     far = np.linalg.norm(shape - shape[0], axis=1)
-    while len(chosen) < min(MOST_VIEWS, len(rich)):
+    while len(chosen) < min(LIMITS.most_views, len(rich)):
         chosen.append(int(far.argmax()))
         far = np.minimum(far, np.linalg.norm(shape - shape[chosen[-1]], axis=1))
     return [int(rich[k]) for k in chosen]
@@ -163,7 +161,7 @@ def _likely(turns: Any, shifts: Any, errors: Any, before: Array) -> tuple[Any, A
     from scipy.spatial.transform import Rotation
 
     best = 0
-    if len(turns) > 1 and len(before) and errors[1] < ALIKE * errors[0]:
+    if len(turns) > 1 and len(before) and errors[1] < LIMITS.alike * errors[0]:
         found = Rotation.from_rotvec(np.reshape(turns, (-1, 3))).inv().as_matrix()
         best = int(np.linalg.norm(found - before, axis=(1, 2)).argmin())
     return turns[best], shifts[best]

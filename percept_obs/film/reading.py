@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.film.board import Board, other_markers
-from percept_obs.film.faults import FEWEST, Faults, find_faults
+from percept_obs.film.faults import LIMITS as FAULTS
+from percept_obs.film.faults import Faults, find_faults
 from percept_obs.film.film import BOARD, TRIANGULATION, Film
 from percept_obs.film.lens import FEWEST_CORNERS, Seen, find_lens, find_poses
 from percept_obs.film.pictures import undistorted
-from percept_obs.film.sighting import SHORTEST_TRACK, WIDEST, Sighting, sight
+from percept_obs.film.sighting import LIMITS as TRACKS
+from percept_obs.film.sighting import Sighting, sight
 from percept_obs.film.triangulation import triangulate
 from percept_obs.film.video import Video, open_film
 from percept_obs.recording import Recording
@@ -25,32 +27,25 @@ from percept_obs.recording.track_table import runs
 from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked
 
-LOOKED_AT = 8
-"""Pictures in which other boards are looked for, where this one is not seen."""
-
-SHORTEST_FILM = 1.5
-"""Seconds that a film lasts at least."""
-
-GAP = 0.3
-"""Seconds without a pose, or without a corner of the board, after which another part begins."""
-
-JUMP, FASTEST = 20.0, 5.0
-"""Median steps, and metres a second, beyond which the camera cannot have moved: the film was cut there."""
-
-ALIKE = 1.0
-"""Seconds in which errors of corners and poses stay alike, for they come of blur, compression and the lens.
-
-So the samples in it count as one: the variance that a recording has is that of white noise as bad as these errors.
-"""
-
-LARGEST_SPREAD = 2.0
-"""Pixels by which samples of a point at rest scatter at most."""
-
 SPOILS = ("unknown", "focus", "stabilisation", "board", "lens", "noise")
 """Keys of the mistakes that are not corrected, and with which no estimate is trusted."""
 
-SURE = 0.1
-"""Largest relative standard deviation of a triangulated distance."""
+
+@dataclass(frozen=True)
+class Limits:
+    """What a film must be, and which points of it are taken."""
+
+    looked_at: int = 8  # pictures in which other boards are looked for, where this one is not seen
+    shortest: float = 1.5  # seconds that a film lasts at least
+    gap: float = 0.3  # seconds without a pose or a corner, a tremor of the hand, after which another part begins
+    jump: float = 20.0  # median steps from picture to picture, and metres a second, beyond which both the camera cannot
+    fastest: float = 5.0  # have moved: the film was cut there
+    alike: float = 1.0  # seconds of samples that count as one: errors of blur and of the lens stay alike so long
+    spread: float = 2.0  # pixels by which samples of a point at rest scatter at most
+    sure: float = 0.1  # largest relative standard deviation of a triangulated distance
+
+
+LIMITS = Limits()
 
 
 @checked
@@ -129,7 +124,7 @@ def read_film(
     found += _others(sighting, camera, travelled)
     if not found:
         raise ValueError(
-            f"'{video.path}' shows no point for {SHORTEST_TRACK:g} s while the camera's pose is known; move slowly, "
+            f"'{video.path}' shows no point for {TRACKS.shortest:g} s while the camera's pose is known; move slowly, "
             "with the board in the picture"
         )
     return Film(
@@ -158,7 +153,7 @@ def _noise(recording: Recording, seen: Seen | None) -> float:
         spread = np.median(np.diagonal(seen.covariance, axis1=1, axis2=2), axis=0)
         depth = float(np.median(recording.distances[TRIANGULATION]))
         variance += float(spread[:3].mean() + spread[3:].mean() / depth**2)
-    return variance * max(1.0, ALIKE / float(np.median(recording.intervals)))
+    return variance * max(1.0, LIMITS.alike / float(np.median(recording.intervals)))
 
 
 def _doubt(faults: Faults | None) -> str:
@@ -183,15 +178,15 @@ def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
     enough = int((count >= FEWEST_CORNERS).sum())
     if sighting.twice.mean() > 0.1:
         raise ValueError(f"'{video.path}' shows two boards with the same markers; leave one in the picture")
-    if np.ptp(sighting.time) < SHORTEST_FILM or len(count) < FEWEST:
+    if np.ptp(sighting.time) < LIMITS.shortest or len(count) < FAULTS.fewest:
         raise ValueError(
             f"'{video.path}' is too short: {len(count)} pictures in {np.ptp(sighting.time):.1f} s; film for 10 to 20 s"
         )
-    if enough < FEWEST:
+    if enough < FAULTS.fewest:
         instead = _seen_instead(video, len(count)) or "Is it this board (board=...)?"
         raise ValueError(
             f"{enough} of {len(count)} pictures of '{video.path}' show {FEWEST_CORNERS} corners of the board, "
-            f"{board.name}, and {FEWEST} are needed. {instead} It must "
+            f"{board.name}, and {FAULTS.fewest} are needed. {instead} It must "
             "lie flat, be sharp, and fill a third of the picture's width. Without a board, give poses=... and "
             "camera=..., as of read_colmap"
         )
@@ -199,7 +194,7 @@ def _refuse_unseen(sighting: Sighting, board: Board, video: Video) -> None:
 
 def _seen_instead(video: Video, pictures: int) -> str:
     """Return which other markers some of so many pictures show, in a sentence, or nothing."""
-    every, scale = max(1, pictures // LOOKED_AT), min(1.0, WIDEST / max(video.size))
+    every, scale = max(1, pictures // LIMITS.looked_at), min(1.0, TRACKS.widest / max(video.size))
     shots = (shot for k, (_, shot) in enumerate(video.shots("looking for other boards")) if k % every == 0)
     seen = [name for shot in shots for name in other_markers(shot(scale, "gray"))]
     if not seen:
@@ -210,12 +205,14 @@ def _seen_instead(video: Video, pictures: int) -> str:
 def _path(poses: Poses) -> CameraPath:
     """Return smoothed poses and velocities of each part without a gap that is long enough."""
     far = np.linalg.norm(np.diff(poses.position, axis=0), axis=1)
-    jumps = 1 + np.flatnonzero(far > np.maximum(JUMP * np.median(far), FASTEST * np.diff(poses.time)))  # as at a cut
+    farthest = np.maximum(LIMITS.jump * np.median(far), LIMITS.fastest * np.diff(poses.time))
+    jumps = 1 + np.flatnonzero(far > farthest)  # as at a cut
     whole = np.split(np.arange(len(poses.time)), jumps)
-    parts = [part for each in whole for part in runs(poses.time, each, GAP) if len(part) >= FEWEST_POSES]
+    parts = [part for each in whole for part in runs(poses.time, each, LIMITS.gap) if len(part) >= FEWEST_POSES]
     if not parts:
         raise ValueError(
-            f"the poses have gaps of more than {GAP:g} s everywhere; keep the board in the picture while you move"
+            f"the poses have gaps of more than {LIMITS.gap:g} s everywhere; keep the board in the picture while you "
+            "move"
         )
     found = [Poses(poses.time[part], poses.position[part], poses.orientation[part]).path() for part in parts]
     longest = max(found, key=lambda each: len(each.time))
@@ -249,9 +246,9 @@ def _recordings(
     row = np.searchsorted(path.time, time)
     there = (row < len(path.time)) & (path.time[np.minimum(row, len(path.time) - 1)] == time)
     surface, turns = pinhole(), path.rotation
-    parts = runs(time, np.flatnonzero(there), GAP)
+    parts = runs(time, np.flatnonzero(there), LIMITS.gap)
     for part in parts:
-        if time[part[-1]] - time[part[0]] < SHORTEST_TRACK:
+        if time[part[-1]] - time[part[0]] < TRACKS.shortest:
             continue
         image = camera.directions(pixels[part])
         inside = np.isfinite(image).all(axis=1)  # the lens may end before the picture does
@@ -261,7 +258,7 @@ def _recordings(
         at = row[part]
         place = triangulate(path.position[at], turns[at].as_matrix(), image)
         first = int(place.agree.argmax())  # observers start from the first sample
-        if known is None and not (place.deviation < SURE and place.spread * camera.focal[0] < LARGEST_SPREAD):
+        if known is None and not (place.deviation < LIMITS.sure and place.spread * camera.focal[0] < LIMITS.spread):
             continue
         local = {
             key: turns[at].inv().apply(point - path.position[at])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,17 +10,19 @@ import numpy as np
 from percept_obs.compile import Array
 from percept_obs.film.board import Board
 
-SHARE = 0.75
-"""Share of the edges that are narrower than the width of a picture's edges, since motion blurs those across it only."""
 
-REACH = 0.9
-"""Share of the white between square and marker in which the grey across an edge is looked at."""
+@dataclass(frozen=True)
+class Limits:
+    """Where the grey of an edge is looked at."""
 
-FAINT = 20.0
-"""Contrast in grey values up to which an edge is not looked at."""
+    share: float = 0.75  # of the edges are narrower than a picture's: motion blurs only those across it
+    reach: float = 0.9  # share of the white between square and marker in which the grey across an edge is looked at
+    faint: float = 20.0  # contrast in grey values up to which an edge is not looked at: noise would be its slope
+    along: int = 15  # places along an edge, of which the mean grey is taken,
+    across: int = 33  # and places across it
 
-ALONG, ACROSS = 15, 33
-"""Numbers of places at which an edge is looked at."""
+
+LIMITS = Limits()
 
 
 def edge_width(picture: Any, corners: Array, board: Board) -> float:
@@ -31,16 +34,17 @@ def edge_width(picture: Any, corners: Array, board: Board) -> float:
 
     begin, end = np.moveaxis(corners[board.neighbours], 1, 0)[..., None, None, :]
     normal = (end - begin)[..., ::-1] * [-1, 1]
-    reach = REACH * (board.square - board.marker) / 2 / board.square
-    along, across = np.linspace(0.25, 0.75, ALONG)[:, None, None], np.linspace(-reach, reach, ACROSS)[:, None]
+    reach = LIMITS.reach * (board.square - board.marker) / 2 / board.square
+    along = np.linspace(0.25, 0.75, LIMITS.along)[:, None, None]
+    across = np.linspace(-reach, reach, LIMITS.across)[:, None]
     places = begin + along * (end - begin) + across * normal
     seen = np.isfinite(places).all(axis=(1, 2, 3))
     if not seen.any():
         return float("nan")
-    x, y = np.moveaxis(places[seen].astype(np.float32).reshape(-1, ACROSS, 2), -1, 0)
-    grey = cv2.remap(picture, x, y, cv2.INTER_CUBIC).reshape(-1, ALONG, ACROSS).mean(axis=1)
+    x, y = np.moveaxis(places[seen].astype(np.float32).reshape(-1, LIMITS.across, 2), -1, 0)
+    grey = cv2.remap(picture, x, y, cv2.INTER_CUBIC).reshape(-1, LIMITS.along, LIMITS.across).mean(axis=1)
     contrast = np.ptp(grey, axis=1)
-    step = 2 * reach / (ACROSS - 1) * np.linalg.norm(normal[seen, 0, 0], axis=-1)
+    step = 2 * reach / (LIMITS.across - 1) * np.linalg.norm(normal[seen, 0, 0], axis=-1)
     slope = np.abs(np.gradient(grey, axis=1)).max(axis=1) / step
-    clear = contrast > FAINT
-    return float(np.quantile(contrast[clear] / slope[clear], SHARE)) if clear.any() else float("nan")
+    clear = contrast > LIMITS.faint
+    return float(np.quantile(contrast[clear] / slope[clear], LIMITS.share)) if clear.any() else float("nan")

@@ -20,29 +20,24 @@ from percept_obs.validation import write_whole
 VERSION = 4
 """Number of the format of files in the cache."""
 
-WIDEST = 1280
-"""Pixels of the longer side in which corners are looked for; larger pictures are made smaller."""
 
-MOST = 60
-"""Corners off the board that are followed at once."""
+@dataclass(frozen=True)
+class Limits:
+    """Which corners of pictures are followed, and which pictures are kept."""
 
-SHORTEST_TRACK = 1.0
-"""Seconds that a track lasts at least."""
+    widest: int = 1280  # pixels of the longer side in which corners are looked for; larger pictures are made smaller
+    most: int = 60  # corners off the board that are followed at once
+    shortest: float = 1.0  # seconds that a track lasts at least: a shorter one tells no distance
+    often: int = 5  # pictures from one search for new corners to the next, for a search takes longer than following
+    apart: int = 24  # pixels between two corners when they are found
+    margin: float = 1.7  # size of the area around the board without others, over that of its inner corners
+    back: float = 0.3  # pixels by which a corner may miss its place when it is followed forward and back
+    small: int = 640  # pixels of the longer side of a small picture, which the lab shows,
+    every: float = 0.1  # seconds between two of them,
+    most_small: int = 240  # and how many are kept at most
 
-OFTEN = 5
-"""Pictures from one search for new corners to the next."""
 
-APART = 24
-"""Pixels between two corners when they are found."""
-
-MARGIN = 1.7
-"""Size of the area around the board where no others are looked for, over that of its inner corners."""
-
-BACK = 0.3
-"""Pixels by which a corner may miss its place when it is followed forward and back."""
-
-SMALL, EVERY, MOST_SMALL = 640, 0.1, 240
-"""Longer side of a small picture in pixels, seconds between two, and how many are kept at most."""
+LIMITS = Limits()
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +114,7 @@ def _look(video: Video, board: Board) -> Sighting:
 
     from percept_obs.film.sharpness import edge_width
 
-    scale, before = min(1.0, WIDEST / max(video.size)), None
+    scale, before = min(1.0, LIMITS.widest / max(video.size)), None
     live: list[_Track] = []
     lasting: list[_Track] = []
     time: list[float] = []
@@ -134,23 +129,23 @@ def _look(video: Video, board: Board) -> Sighting:
         corners.append(np.full((len(board.points), 2), np.nan))
         corners[-1][numbers] = pixels
         width.append(edge_width(picture, corners[-1], board))
-        if not shown or seconds - shown[-1] > EVERY - 1e-6:
-            coloured = cv2.cvtColor(shot(min(1.0, SMALL / max(video.size)), "rgb24"), cv2.COLOR_RGB2BGR)
+        if not shown or seconds - shown[-1] > LIMITS.every - 1e-6:
+            coloured = cv2.cvtColor(shot(min(1.0, LIMITS.small / max(video.size)), "rgb24"), cv2.COLOR_RGB2BGR)
             shown.append(seconds)
             small.append(np.frombuffer(cv2.imencode(".jpg", coloured, [cv2.IMWRITE_JPEG_QUALITY, 80])[1], np.uint8))
         if live:
             found, places = _followed(before, picture, np.array([track.pixels[-1] for track in live]))
             lost = [track for track, there in zip(live, found, strict=True) if not there]
-            lasting += [track for track in lost if track.seconds(time) >= SHORTEST_TRACK]
+            lasting += [track for track in lost if track.seconds(time) >= LIMITS.shortest]
             live = [track for track, there in zip(live, found, strict=True) if there]
             for track, place in zip(live, places[found], strict=True):
                 track.pixels.append(place)
-        if k % OFTEN == 0 and len(live) < MOST:
+        if k % LIMITS.often == 0 and len(live) < LIMITS.most:
             live += [_Track(k, [pixel]) for pixel in _new(picture, corners[-1], [track.pixels[-1] for track in live])]
         before = picture
-    lasting += [track for track in live if track.seconds(time) >= SHORTEST_TRACK]
+    lasting += [track for track in live if track.seconds(time) >= LIMITS.shortest]
     lasting.sort(key=lambda track: track.first)
-    rows = np.unique(np.linspace(0, len(shown) - 1, MOST_SMALL).round().astype(int))
+    rows = np.unique(np.linspace(0, len(shown) - 1, LIMITS.most_small).round().astype(int))
     return Sighting(
         np.array(time),
         (np.array(corners) + 0.5) / scale - 0.5,  # the first pixel's centre is at 0
@@ -174,7 +169,7 @@ def _followed(before: Any, now: Any, pixels: Array) -> tuple[Any, Array]:
     there, good, _ = cv2.calcOpticalFlowPyrLK(before, now, start, None, **options)
     back, well, _ = cv2.calcOpticalFlowPyrLK(now, before, there, None, **options)
     inside = ((there > 10) & (there < np.array(now.shape[::-1]) - 10)).all(axis=1)
-    return (good & well).ravel().astype(bool) & (np.linalg.norm(back - start, axis=1) < BACK) & inside, there
+    return (good & well).ravel().astype(bool) & (np.linalg.norm(back - start, axis=1) < LIMITS.back) & inside, there
 
 
 def _new(picture: Any, corners: Array, followed: list[Any]) -> Any:
@@ -183,10 +178,10 @@ def _new(picture: Any, corners: Array, followed: list[Any]) -> Any:
 
     free = np.full(picture.shape, 255, np.uint8)
     for u, v in followed:
-        cv2.circle(free, (round(float(u)), round(float(v))), APART, 0, -1)
+        cv2.circle(free, (round(float(u)), round(float(v))), LIMITS.apart, 0, -1)
     seen = corners[np.isfinite(corners).all(axis=1)]
     if len(seen) >= 3:
-        around = seen.mean(axis=0) + MARGIN * (seen - seen.mean(axis=0))
+        around = seen.mean(axis=0) + LIMITS.margin * (seen - seen.mean(axis=0))
         cv2.fillConvexPoly(free, cv2.convexHull(around.round().astype(np.int32)), 0)
-    found = cv2.goodFeaturesToTrack(picture, MOST - len(followed), 0.02, APART, mask=free)
+    found = cv2.goodFeaturesToTrack(picture, LIMITS.most - len(followed), 0.02, LIMITS.apart, mask=free)
     return np.empty((0, 2)) if found is None else found[:, 0]

@@ -11,7 +11,7 @@ from percept_obs.compile import Array, Flags
 from percept_obs.compile.integrator import by_step, instants, step
 from percept_obs.points.form import PointsForm
 from percept_obs.recording import Recording
-from percept_obs.tracking.information import FINEST, ROUNDING, Fit
+from percept_obs.tracking.information import LIMITS, Fit
 
 LARGEST_TABLE = 4_000_000
 """Most entries of the table of transitions; of more samples, every so many are taken."""
@@ -32,14 +32,14 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
         m = outputs.shape[-1]
         rows = form.rows(outputs).reshape(len(used), form.points, m, form.states) @ back[:, None]
         l = form.surface_numbers[1]
-        x, finest = np.zeros(form.states), FINEST * float(np.nanmax(np.abs(outputs), initial=FINEST))
+        x, finest = np.zeros(form.states), LIMITS.finest * float(np.nanmax(np.abs(outputs), initial=LIMITS.finest))
         weight = np.ones((len(used), form.points))
         for _ in range(PASSES):
             flat = (weight[..., None, None] * rows).reshape(-1, form.states + 1)
             product = flat.T @ flat
             M, b = product[:-1, :-1], product[:-1, -1]
             values, vectors = np.linalg.eigh(M)
-            determined = values > ROUNDING**2 * values[-1]
+            determined = values > LIMITS.rounding**2 * values[-1]
             x = -vectors[:, determined] @ ((vectors[:, determined].T @ b) / values[determined])
             depth = form.locate(back @ np.append(x, 1.0)) @ l
             seen = np.isfinite(outputs).all(axis=-1)
@@ -71,7 +71,7 @@ def transitions(form: PointsForm, time: Array) -> Array:
 def _worst(form: PointsForm, x: Array, values: Array, vectors: Array, determined: Flags, noise: float) -> float:
     """Standard deviation of the position of the point that is known least, relative to its distance."""
     spread = np.linalg.norm(form.blocks @ vectors, axis=1)  # of each point along each direction of the state
-    if (spread[:, ~determined] > ROUNDING).any():
+    if (spread[:, ~determined] > LIMITS.rounding).any():
         return math.inf
     off = noise * np.sqrt((spread[:, determined] ** 2 / values[determined]).sum(axis=1))
     return float((off / np.linalg.norm(form.locate(x), axis=-1)).max())

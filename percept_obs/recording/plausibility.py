@@ -11,10 +11,10 @@ from percept_obs.system.view import View
 from percept_obs.validation import warn
 
 LARGEST_USUAL = 20.0
-"""Absolute image coordinate, 3 degrees before the image plane ends, beyond which half of the samples hardly lie."""
+"""Focal lengths from the middle beyond which hardly a lens looks, 87 degrees aside: what is larger are pixels."""
 
 LONG_GAP = 10
-"""Times the usual interval of a sampled motion above which an interval is a gap."""
+"""Usual intervals of a sampled motion that make a gap: clocks that stumble skip fewer."""
 
 
 class Unlikely(UserWarning):

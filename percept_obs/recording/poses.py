@@ -20,17 +20,18 @@ from percept_obs.validation import checked, numbers, travels, warn
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
-UNIT = 0.01
-"""Largest difference of a quaternion's length, or of R^T R, from 1: files are rounded."""
 
-LONGEST_ROW = 1 / 120
-"""Seconds between two rows of a path at most: between its rows a motion is linear, which loses its fast part."""
+@dataclass(frozen=True)
+class Limits:
+    """What poses must be, and how near to each other."""
 
-NEAREST = 1e-3
-"""Mean steps to the next pose, below which both have one place in the smoother: nearer ones tell no velocity."""
+    unit: float = 0.01  # largest difference of a quaternion's length, or of R^T R, from 1: files are rounded
+    longest_row: float = 1 / 120  # seconds between two rows of a path: a motion is linear between them
+    nearest: float = 1e-3  # mean steps to the next pose; of two that are nearer, rounding would be the velocity
+    repeated: float = 0.25  # share of poses that are the one before them again, beyond which somebody has repeated them
 
-REPEATED = 0.25
-"""Share of poses that are the one before them again, from which on somebody has repeated them."""
+
+LIMITS = Limits()
 
 
 @checked
@@ -162,7 +163,7 @@ class Poses:
         time, position, rotation = self._apart
         moving = (np.ptp(position, axis=0) > 0).any()
         again = (np.diff(position, axis=0) == 0).all(axis=1) & (np.diff(rotation.as_quat(), axis=0) == 0).all(axis=1)
-        if moving and again.mean() > REPEATED:
+        if moving and again.mean() > LIMITS.repeated:
             warn(
                 Unlikely(
                     f"{again.sum()} of {len(time)} poses are the ones before them again, so that the camera seems to "
@@ -182,7 +183,7 @@ class Poses:
         """Times, positions and rotations without poses that are too near to the one before them."""
         if len(self.time) < FEWEST:
             raise ValueError(f"{len(self.time)} poses are too few for velocities; {FEWEST} are needed")
-        near = NEAREST * float(self.time[-1] - self.time[0]) / (len(self.time) - 1)
+        near = LIMITS.nearest * float(self.time[-1] - self.time[0]) / (len(self.time) - 1)
         rows = [0]
         if np.diff(self.time).min() > near:
             return self.time, self.position, self.rotation
@@ -221,7 +222,7 @@ def _densely(time: Array, placed: Smoothed, turned: Rotation, turning: Smoothed,
     from scipy.spatial.transform import Rotation
 
     steps = np.diff(time)
-    parts = np.ceil(steps / LONGEST_ROW * (1 - 1e-9)).astype(int)
+    parts = np.ceil(steps / LIMITS.longest_row * (1 - 1e-9)).astype(int)
     row = np.repeat(np.arange(len(steps)), parts)
     share = (np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[row]
     times = np.append(time[row] + share * steps[row], time[-1])
@@ -378,7 +379,7 @@ def _quaternions(turns: Array) -> Array:
 
     if turns.ndim == 2:
         off = np.abs(np.linalg.norm(turns, axis=1) - 1)
-        if off.max() > UNIT:
+        if off.max() > LIMITS.unit:
             row = int(off.argmax())
             raise ValueError(
                 f"the quaternion in row {row + 1} has the length {np.linalg.norm(turns[row]):.4g}, expected 1; is the "
@@ -387,7 +388,7 @@ def _quaternions(turns: Array) -> Array:
         return turns / np.linalg.norm(turns, axis=1, keepdims=True)
     off = np.abs(turns @ np.swapaxes(turns, 1, 2) - np.eye(3)).max(axis=(1, 2))
     off = np.where(np.linalg.det(turns) > 0, off, np.inf)
-    if off.max() > UNIT:
+    if off.max() > LIMITS.unit:
         raise ValueError(
             f"the matrix in row {int(off.argmax()) + 1} is no rotation: its columns must have length 1, be at right "
             "angles, and be right-handed"

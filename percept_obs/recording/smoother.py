@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
 FEWEST = 5
-"""Poses that are needed at least."""
+"""Poses that are needed at least: they have two third differences, which tell the noise and the smoothness."""
 
 SMOOTHNESS = np.logspace(-12, 6, 15)
 """Values of lambda = q h^5 / r that are tried first: smaller ones are lost in rounding, larger ones smooth nothing."""
 
 ROUNDING = 1e-12
-"""Standard deviation of a pose's noise at least, relative to how far the poses spread."""
+"""Least deviation of a pose's noise, over how far the poses spread: exact poses have the noise of their rounding."""
 
 GAUSS = np.polynomial.legendre.leggauss(3)
-"""Places in [-1, 1] and weights that integrate polynomials up to the fifth power exactly."""
+"""Three places in [-1, 1] and weights: the integrals of splines and squares here are of the fourth power at most."""
 
 
 @dataclass(frozen=True, eq=False)

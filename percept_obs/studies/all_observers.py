@@ -42,7 +42,7 @@ MOST_JUDGED = 20
 """Most runs of an observer that are judged where there is no truth, at a tenth of a second each."""
 
 SMALLEST = 1e-5
-"""Smallest value of a gain that may be 0, over its largest, where the likelihood is looked for."""
+"""A gain that may be 0 is searched from this share of its largest value on, for the search is over its logarithm."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

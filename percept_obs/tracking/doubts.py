@@ -20,10 +20,10 @@ The poses of a hand-held camera or a car hardly ever have axes that are known to
 """
 
 FAR = 1e3
-"""Value of outputs that have left all bounds."""
+"""Outputs of a point that is not seen, beyond what any camera sees, so that no fit likes to go there."""
 
 SPLIT = 500
-"""Steps at most into which a window is divided, besides those that samples end."""
+"""Steps into which a window is divided at most, besides those that end at samples: more take long, and add nothing."""
 
 
 def images_backwards(recording: Recording, first: int, columns: list[int]) -> Callable[[Array], Array]:

@@ -18,26 +18,23 @@ from percept_obs.system.view import View
 from percept_obs.tracking.doubts import DOUBTS, FAR, SPLIT, images_backwards
 from percept_obs.tracking.grid import known_signals
 
-ENOUGH = 0.02
-"""Relative standard deviation at which a window is long enough: a longer one only adds errors of the motion."""
 
-NOTHING = 1.0
-"""Relative standard deviation from which on samples tell nothing."""
+@dataclass(frozen=True)
+class Limits:
+    """When samples tell enough, and what of their noise is known before."""
 
-FEWEST = 20
-"""Samples in the shortest window."""
+    enough: float = 0.02  # relative deviation at which a window is long enough: longer ones add the motion's errors
+    nothing: float = 1.0  # relative deviation from which on samples tell nothing: the distance may be any
+    fewest: int = 20  # samples in the shortest window
+    longer: int = 3  # windows twice as long each, by which the known motion is tested once one is long enough
+    surely: float = 3.5  # deviations of chance by which residuals are more alike than white noise: one in 4000 runs
+    correlated: float = 0.5  # seconds up to which errors of samples are asked for their correlation
+    finest: float = 1e-6  # noise of the best measurement, over the output's size: no camera is better
+    rounding: float = 1e-7  # share of a column's norm below which differences of nearly equal numbers are rounding
+    small: float = 1e-4  # relative change of a coordinate for a difference quotient
 
-LONGER = 3
-"""Windows twice as long each, by which the known motion is tested once one is long enough."""
 
-SURELY = 3.5
-"""Standard deviations by which an autocorrelation must differ from that of white noise to be one."""
-
-CORRELATED = 0.5
-"""Seconds up to which errors of samples are asked for their correlation."""
-
-FINEST = 1e-6
-"""Noise of the best measurement, relative to the output's size: no camera is better, and rounding is not far below."""
+LIMITS = Limits()
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,18 +62,12 @@ class Information:
         """
         found = 0.0
         for other in self.longer:
-            if not other.deviation < NOTHING:
+            if not other.deviation < LIMITS.nothing:
                 return math.inf
             apart = float(view.relative_error(self.estimate[None], other.estimate[None], known)[0])
             found = max(found, apart**2 - self.deviation**2 - other.deviation**2)
         return math.sqrt(found)
 
-
-ROUNDING = 1e-7
-"""Share of a column's norm below which differences of nearly equal numbers are rounding."""
-
-SMALL = 1e-4
-"""Relative change of a coordinate for a difference quotient."""
 
 Fit = Callable[[int, list[Array]], tuple[Array, float, Array, float]]
 """Least squares on the samples from one on, from the best of some initial guesses; returns coordinates at the end,
@@ -89,19 +80,19 @@ def information_at_end(fit: Fit, elapsed: Array, guess: Array) -> Information:
     The guess has the coordinates at the last sample, such as an observer's; NaN where there are none.
     """
     guesses = [guess] if np.isfinite(guess).all() else []
-    count, length, unexcited = len(elapsed), min(FEWEST, len(elapsed)), 0.0
+    count, length, unexcited = len(elapsed), min(LIMITS.fewest, len(elapsed)), 0.0
     found: list[Information] = []
     while True:
         first = count - length
         window = float(elapsed[-1] - elapsed[first])
         estimate, deviation, noise, drift = fit(first, guesses)
-        if deviation >= NOTHING and not found:
+        if deviation >= LIMITS.nothing and not found:
             unexcited = window
-        elif deviation < NOTHING:
+        elif deviation < LIMITS.nothing:
             guesses = [*guesses[:1], estimate]
-        if found or deviation <= ENOUGH or first == 0:
+        if found or deviation <= LIMITS.enough or first == 0:
             found.append(Information(estimate, deviation, window, unexcited, noise, drift))
-        if len(found) > LONGER or first == 0:
+        if len(found) > LIMITS.longer or first == 0:
             return replace(found[0], longer=tuple(found[1:]))
         length = min(2 * length, count)
 
@@ -133,14 +124,14 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         plain[places] = [column[np.isfinite(column)][-1] for column in samples.T]
         begins = [plain, *(np.append(guess * scale, plain[size:]) for guess in guesses)]
         start = min(begins, key=lambda x: float(((samples - images(x))[seen] ** 2).sum()))
-        finest = max(FINEST * float(np.abs(samples[seen]).max()), math.sqrt(known_noise)) or FINEST
+        finest = max(LIMITS.finest * float(np.abs(samples[seen]).max()), math.sqrt(known_noise)) or LIMITS.finest
         noise = np.ones(measured)
         for _ in range(2):
 
             def residuals(x: Array, noise: Array = noise) -> Array:
                 return np.append(((images(x) - samples) / noise)[seen], x[size:] / np.array(doubts))
 
-            solution = least_squares(residuals, start, x_scale="jac", diff_step=SMALL, max_nfev=50)
+            solution = least_squares(residuals, start, x_scale="jac", diff_step=LIMITS.small, max_nfev=50)
             start, rest = solution.x, np.where(seen, samples - images(solution.x), 0.0)
             spread = np.sqrt((rest**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
             if _inflation(rest / np.maximum(spread, finest), time) > 1:  # residuals drift: trust all outputs alike
@@ -183,18 +174,18 @@ def _backwards(form: PartitionedSystem, recording: Recording, first: int) -> Cal
 def _inflation(residuals: Array, time: Array) -> float:
     """Factor by which a standard deviation grows where residuals are surely correlated, 0 where a sample was lost."""
     products = residuals[1:] * residuals[:-1]
-    surely = SURELY * float((residuals**2).sum()) < float(products.sum()) * math.sqrt(np.count_nonzero(products))
+    surely = LIMITS.surely * float((residuals**2).sum()) < float(products.sum()) * math.sqrt(np.count_nonzero(products))
     return math.sqrt(max(1.0, correlation(residuals, time))) if surely else 1.0
 
 
 def correlation(residuals: Array, time: Array) -> float:
     """Return how many times their variance white noise needs, to be as bad as residuals, shape (K, m), 0 if lost.
 
-    Covariances of residuals less than `CORRELATED` seconds apart count, the farther ones less (Newey and West, A
+    Covariances of residuals less than `correlated` seconds apart count, the farther ones less (Newey and West, A
     simple, positive semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix, Econometrica
     55(3), 1987).
     """
-    lags = min(int(CORRELATED / float(np.median(np.diff(time)))), len(residuals) - 1)
+    lags = min(int(LIMITS.correlated / float(np.median(np.diff(time)))), len(residuals) - 1)
     shares = [1 - k / (lags + 1) for k in range(1, lags + 1)]
     pairs = sum(share * float((residuals[k:] * residuals[:-k]).sum()) for k, share in enumerate(shares, 1))
     return 1 + 2 * pairs / max(float((residuals**2).sum()), np.finfo(float).tiny)
@@ -205,7 +196,7 @@ def _deviation(jacobian: Array, k: int) -> float:
     others = np.delete(jacobian, k, axis=1)
     alone = jacobian[:, k] - others @ np.linalg.lstsq(others, jacobian[:, k], rcond=None)[0]
     size = float(np.linalg.norm(alone))
-    return 1 / size if size > ROUNDING * float(np.linalg.norm(jacobian[:, k])) else math.inf
+    return 1 / size if size > LIMITS.rounding * float(np.linalg.norm(jacobian[:, k])) else math.inf
 
 
 def relative_deviation(view: View, estimate: Array, deviations: Array, known: Array) -> float:
@@ -213,7 +204,7 @@ def relative_deviation(view: View, estimate: Array, deviations: Array, known: Ar
     total = 0.0
     for k, deviation in enumerate(deviations):
         step = np.zeros(len(estimate))
-        step[k] = SMALL * (abs(estimate[k]) or float(np.abs(estimate).max()))
+        step[k] = LIMITS.small * (abs(estimate[k]) or float(np.abs(estimate).max()))
         change = float(view.relative_error(estimate[None], (estimate + step)[None], known)[0])
         if not math.isfinite(change):
             return math.inf

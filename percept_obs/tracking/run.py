@@ -16,7 +16,7 @@ from percept_obs.recording import Recording
 from percept_obs.system.view import View
 from percept_obs.tracking.grid import Hold
 from percept_obs.tracking.information import (
-    NOTHING,
+    LIMITS,
     Fit,
     Information,
     correlation,
@@ -314,7 +314,7 @@ class Run:
         widened = math.hypot(found.deviation, apart / 2, speeds)
         said = partial(said, information=replace(found, deviation=widened if apart <= tolerance else found.deviation))
         if not 2 * found.deviation <= tolerance:
-            return said("vague" if found.deviation < NOTHING else "hidden")
+            return said("vague" if found.deviation < LIMITS.nothing else "hidden")
         if (drift := (found, *found.longer)[-1].drift) > tolerance / 2:
             return said("drifting", disagreement=drift)
         if apart > tolerance:

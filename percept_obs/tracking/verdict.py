@@ -25,10 +25,13 @@ an observer that is off by a fifth never enters it.
 """
 
 SETTLED_PART = 0.1
-"""Share of a run, at its end, over which a converged estimate must have stayed within the tolerance."""
+"""Share of a run that an estimate must have stayed within the tolerance, up to its end, to have converged.
+
+An estimate that swings through the truth is near it for a moment, and not for a tenth of the run.
+"""
 
 FAR_OFF = 10.0
-"""Relative error beyond which no number is given."""
+"""Relative error, ten times the distance, beyond which no number is given, for it would tell nothing more."""
 
 VERDICTS = MappingProxyType(
     {

@@ -10,6 +10,7 @@ import pytest
 
 from percept_obs import cli
 from percept_obs.film import Board, board_pdf
+from percept_obs.film.board import other_markers
 from percept_obs.film.printing import largest_square
 
 cv2 = pytest.importorskip("cv2")
@@ -106,6 +107,15 @@ def test_the_page_names_the_board(board):
 
 def test_the_points_are_opencv_s(board):
     assert board.points == pytest.approx(board.charuco.getChessboardCorners(), abs=1e-8)
+
+
+@pytest.mark.parametrize("name", ["DICT_5X5_100", "DICT_APRILTAG_36h11"])
+def test_a_board_of_other_markers_is_named(name):
+    board = cv2.aruco.CharucoBoard((7, 5), 0.036, 0.027, cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, name)))
+    picture = board.generateImage((700, 500), marginSize=40)
+    assert "another dictionary" in other_markers(picture)[0]
+    assert "white on black" in other_markers(255 - picture)[0]
+    assert other_markers(Board().picture()) == []
 
 
 @pytest.mark.parametrize(("columns", "rows"), [(7, 5), (3, 3), (3, 33)])

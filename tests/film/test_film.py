@@ -7,17 +7,16 @@ import av
 import numpy as np
 import pytest
 from film_renderer import quick_film
+from film_study import AFTER, error
 
 from percept_obs import diagnose
 from percept_obs.cli import main
 from percept_obs.film import Board, read_film
 from percept_obs.film.film import TRIANGULATION
+from percept_obs.film.lens import reaches
 from percept_obs.film.triangulation import triangulate
 from percept_obs.film.video import open_film
 from percept_obs.studies.all_observers import all_observers
-
-AFTER = 3.0
-"""Seconds after which errors are looked at."""
 
 
 @pytest.fixture(scope="module")
@@ -38,13 +37,9 @@ def filmed(cache, tmp_path_factory):
 
 def errors(film, truth, board):
     """Relative errors of the filter after some seconds, by the renderer's truth; of the board's corners or others."""
-    found = []
-    for run in film.runs:
-        late = np.flatnonzero((run.elapsed >= AFTER) & run.recording.seen)
-        if len(late) and (run.recording.truth is not None) == board:
-            time, pixel = run.time[late[0]], film.camera.pixels(run.recording.outputs[late[0]])
-            found.append(abs(run.distance[late[0]] / truth.distance_at(time, pixel)[0] - 1))
-    return np.array(found)
+    runs = [run for run in film.runs if (run.recording.truth is not None) == board]
+    late = [np.flatnonzero((run.elapsed >= AFTER) & run.recording.seen) for run in runs]
+    return np.array([error(run, truth, film, rows[0]) for run, rows in zip(runs, late, strict=True) if len(rows)])
 
 
 @pytest.mark.slow
@@ -197,6 +192,14 @@ def test_pictures_out_of_order_keep_their_times(tmp_path):
     time = [seconds for seconds, _ in open_film(tmp_path / "film.avi").shots("x")]
     np.testing.assert_allclose(np.diff(time), 0.1, atol=1e-9)
     assert len(time) == 40
+
+
+@pytest.mark.parametrize(
+    ("lens", "corner", "reached"),
+    [((-0.33, 0), 1.0, False), ((-0.33, 0), 0.669, False), ((-0.33, 0), 0.5, True), ((0.1, 0.05), 0.8, True)],
+)
+def test_a_lens_that_folds_reaches_no_corner(lens, corner, reached):
+    assert reaches(np.array(lens, dtype=float), corner) is reached
 
 
 def test_rays_meet_in_a_point_and_outliers_do_not_count():

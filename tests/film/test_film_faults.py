@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import av
 import cv2
 import numpy as np
 import pytest
@@ -11,9 +10,9 @@ from film_sightings import BOARD, FAULTS, frames, read, sight
 from sample_sizes import sampled
 
 from percept_obs import PixelCamera, Poses
+from percept_obs.film import read_film
 from percept_obs.film.adjustment import SHUTTER, USUAL, _rows, start
 from percept_obs.film.faults import find_faults
-from percept_obs.film.lens import find_lens, find_poses
 from percept_obs.film.sharpness import edge_width
 
 NAMED = {"ms": "rolling shutter", "focus": "focus", "stabilised": "stabilisation"}
@@ -162,18 +161,6 @@ def test_a_film_of_a_few_pictures_is_refused():
     ("fault", "wanted"),
     [({}, set()), ({"readout": 0.02}, {"rolling shutter"}), ({"blur": 1.2}, {"blur"})],
 )
-def test_a_rendered_film_shows_its_faults(tmp_path, fault, wanted):
-    path, truth = quick_film(0, tmp_path, **fault)
-    size, pixels, width, time = tuple(map(int, truth.camera.size)), [], [], []
-    with av.open(str(path)) as film:
-        for frame in film.decode(video=0):
-            picture = frame.to_ndarray(format="gray")
-            number, found, _ = BOARD.detect(picture)
-            pixels.append(np.full((24, 2), np.nan))
-            pixels[-1][number] = found
-            width.append(edge_width(picture, pixels[-1], BOARD))
-            time.append(float(frame.time))
-    time, pixels, width = map(np.array, (time, pixels, width))
-    camera = find_lens(pixels, BOARD.points, size).camera
-    poses = find_poses(time, pixels, BOARD.points, camera).poses
-    assert names(find_faults(time, pixels, BOARD, size, camera, poses, width)) == wanted
+def test_a_rendered_film_shows_its_faults(tmp_path, monkeypatch, fault, wanted):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert names(read_film(quick_film(0, tmp_path, **fault)[0])) == wanted

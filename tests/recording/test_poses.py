@@ -315,3 +315,11 @@ def test_velocities_are_drawn_and_told():
             figures.velocities(wrong)
     with pytest.raises(ValueError, match="the axis is 3"):
         figures.velocities({"a": exact}, axis=3)
+
+
+def test_turns_between_poses_about_two_axes_are_those_of_the_camera():
+    """With the wrong sign where rotations do not commute the error is 26 times as large."""
+    path = poses(np.arange(0, 3, 0.1), pace=2.0).path()
+    inside = (path.time > 0.5) & (path.time < 2.4)
+    rotation = carried(path.time[inside], 2.0)[1]
+    assert (rotation.inv() * path.rotation[inside]).magnitude().max() < 3e-5

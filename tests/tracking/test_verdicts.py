@@ -266,6 +266,11 @@ def test_without_a_truth_nobody_is_trusted_at_a_millimetre_a_second():
     assert "hardly excited since" in run.verdict()
 
 
+def test_a_camera_at_rest_tells_nothing_since_the_first_sample_whatever_the_clock():
+    run = track(blind(shifted(record(REST, 2, Camera(0.1)), 100)), ibo(BOTH), {"y3": 0.1})
+    assert run.trust().sentence.endswith("tell nothing of the distance, hardly excited since 0 s.")
+
+
 def test_least_squares_near_the_focus_of_expansion_are_not_trusted():
     """43 pixels of 500 from the direction of travel, half a pixel of noise: half of the distance is guessed."""
     toward = Scenario("towards", affine(np.zeros((3, 3)), [0, 0, -1]), (43 / 500 * 30, 0, 30), 2, pinhole())

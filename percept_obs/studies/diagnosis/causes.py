@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy as np
@@ -13,19 +13,42 @@ from percept_obs.compile import Array
 LARGEST_OFFSET = 0.25
 """Largest offset in seconds between images and motion that is tried."""
 
+OFFSET, FOCAL, BEND = "time offset", "focal length", "distortion ignored"
+BIAS, DRIFT, SHUTTER = "gyro bias", "scale drift", "rolling shutter"
+
+DIVIDED = "the one by which the images were divided"
+TURNING = "the angular velocity is wrong by a constant"
+ROWS = "rows of an image are read one after another"
+
 
 @dataclass(frozen=True)
 class Cause:
-    """Wrong number that all points of a camera share; it is 0 where nothing is wrong.
+    """Number that may be wrong, of a camera or of a film; it is 0 where nothing is wrong, and worth naming if larger.
 
-    It is fitted up to `largest`, and worth naming from `smallest` on.  The motion can tell it if its deviation is
-    clearly smaller than `usual`.
+    What is `said` names its size, and one of two `ends` by its sign.
     """
 
     key: str
-    sentence: Callable[[Array], str]
-    largest: float
+    said: str
     smallest: float
+    ends: tuple[str, str] = field(default=("late", "early"), kw_only=True)
+
+    def sentence(self, value: Array) -> str:
+        """Return the mistake in words, with its value."""
+        first, listed = float(value[0]), ", ".join(f"{each:.4f}" for each in value)
+        words = {"size": abs(first), "percents": 100 * abs(first), "millis": 1000 * abs(first), "listed": listed}
+        signed = {"first": first, "ratio": 1 + first, "percent": 100 * first, "milli": 1000 * first}
+        return self.said.format(**words, **signed, end=self.ends[first <= 0])
+
+
+@dataclass(frozen=True)
+class WrongNumber(Cause):
+    """Wrong number that all points of a camera share.
+
+    It is fitted up to `largest`.  The motion can tell it if its deviation is clearly smaller than `usual`.
+    """
+
+    largest: float
     usual: float
     unit: str
     size: int = 1
@@ -36,69 +59,18 @@ class Cause:
         return f"{self.usual:g} {self.unit}".removesuffix(" 1")
 
 
-def _offset(late: Array) -> str:
-    return f"the images are {abs(late[0]):.3f} s {'late' if late[0] > 0 else 'early'} against the motion"
-
-
-def _many(values: Array) -> str:
-    return ", ".join(f"{value:.4f}" for value in values)
-
-
 CAUSES = MappingProxyType(
     {
         cause.key: cause
         for cause in (
-            Cause(
-                "time offset",
-                lambda late: (
-                    f"the images are {abs(late[0]):.3f} s {'late' if late[0] > 0 else 'early'} against the motion"
-                ),
-                LARGEST_OFFSET,
-                0.005,
-                0.05,
-                "s",
+            WrongNumber(
+                OFFSET, "the images are {size:.3f} s {end} against the motion", 0.005, LARGEST_OFFSET, 0.05, "s"
             ),
-            Cause(
-                "focal length",
-                lambda more: f"the focal length is {1 + more[0]:.3f} times the one by which the images were divided",
-                0.5,
-                0.01,
-                0.1,
-                "1",
-            ),
-            Cause(
-                "distortion ignored",
-                lambda bend: f"the lens bends the images, by the factor 1 {bend[0]:+.3f} |y|^2",
-                0.6,
-                0.02,
-                0.1,
-                "1",
-            ),
-            Cause(
-                "gyro bias",
-                lambda bias: f"the angular velocity is wrong by a constant ({_many(bias)}) rad/s",
-                0.3,
-                0.003,
-                0.02,
-                "rad/s",
-                3,
-            ),
-            Cause(
-                "scale drift",
-                lambda rate: f"the translation grows too long by {100 * rate[0]:.2g} % a second",
-                0.3,
-                0.003,
-                0.03,
-                "1/s",
-            ),
-            Cause(
-                "rolling shutter",
-                lambda rows: f"rows of an image are read one after another, {1000 * rows[0]:.3g} ms a focal length",
-                0.1,
-                0.003,
-                0.02,
-                "s",
-            ),
+            WrongNumber(FOCAL, f"the focal length is {{ratio:.3f}} times {DIVIDED}", 0.01, 0.5, 0.1, "1"),
+            WrongNumber(BEND, "the lens bends the images, by the factor 1 {first:+.3f} |y|^2", 0.02, 0.6, 0.1, "1"),
+            WrongNumber(BIAS, f"{TURNING} ({{listed}}) rad/s", 0.003, 0.3, 0.02, "rad/s", 3),
+            WrongNumber(DRIFT, "the translation grows too long by {percent:.2g} % a second", 0.003, 0.3, 0.03, "1/s"),
+            WrongNumber(SHUTTER, f"{ROWS}, {{milli:.3g}} ms a focal length", 0.003, 0.1, 0.02, "s"),
         )
     }
 )

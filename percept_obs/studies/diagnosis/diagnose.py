@@ -12,7 +12,7 @@ from percept_obs.recording import Recording
 from percept_obs.recording.plausibility import LARGEST_USUAL
 from percept_obs.studies.diagnosis.causes import CAUSES, LARGEST_OFFSET, MIX_UPS
 from percept_obs.studies.diagnosis.fitting import Estimate
-from percept_obs.studies.diagnosis.search import FEWEST, OUTLYING, Found, search
+from percept_obs.studies.diagnosis.search import LIMITS, Found, search
 from percept_obs.studies.diagnosis.tracks import track_of
 from percept_obs.validation import checked
 
@@ -206,12 +206,12 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
         pixels = Finding("pixels", "the samples are pixels and not divided by the focal length", evidence)
         return Diagnosis((pixels,), math.nan, math.nan, True, noise, looked_at=len(several), given=len(given))
     tracks = {recording: track_of(recording) for recording in several}
-    short = [recording for recording, track in tracks.items() if track.count < FEWEST]
+    short = [recording for recording, track in tracks.items() if track.count < LIMITS.fewest]
     several = [recording for recording in several if recording not in short]
     if not several:
         raise ValueError(
             f"{short[0]!r} has {tracks[short[0]].count} values where its motion is known up to the largest offset that "
-            f"is tried, {LARGEST_OFFSET} s; {FEWEST} are needed: give longer poses or longer tracks"
+            f"is tried, {LARGEST_OFFSET} s; {LIMITS.fewest} are needed: give longer poses or longer tracks"
         )
     found = search(tuple(tracks[recording] for recording in several), noise)
     return Diagnosis(
@@ -252,5 +252,7 @@ def _findings(found: Found, sources: Sequence[str]) -> Iterator[Finding]:
     wild, total = found.outliers
     if wild:
         said = f"{100 * wild / total:.2g} % of the samples are far off the others"
-        evidence = f"{wild} of {total} differ by more than {OUTLYING:g} standard deviations from what the rest tells"
+        evidence = (
+            f"{wild} of {total} differ by more than {LIMITS.outlying:g} standard deviations from what the rest tells"
+        )
         yield Finding("outliers", said, evidence, wild / total)

@@ -9,59 +9,42 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from percept_obs.compile import Array, Flags
-from percept_obs.studies.diagnosis.causes import CAUSES, LARGEST_OFFSET, MIX_UPS
+from percept_obs.studies.diagnosis.causes import BEND, BIAS, CAUSES, DRIFT, LARGEST_OFFSET, MIX_UPS, OFFSET, SHUTTER
 from percept_obs.studies.diagnosis.fitting import FINEST, Estimate, Fit, fit
 from percept_obs.studies.diagnosis.tracks import Track, guess, numbers_of, path_of, seen
 
-SURELY = 5.0
-"""Standard deviations from which on a number is named."""
 
-UNEXPLAINED = 1.5
-"""Ratio of what is left to the noise from which on something is unexplained."""
+@dataclass(frozen=True)
+class Limits:
+    """From where on a mistake is named, and something is left to explain."""
 
-WHITE = 0.3
-"""Correlation of neighbouring residuals up to which they count as noise, where the noise is not known."""
+    surely: float = 5.0  # standard deviations of a number from 0: six are tried, and nobody is to be accused wrongly
+    clearly: float = 10.0  # logarithm by which samples are likelier with what is named: e^10 times, for the same reason
+    unexplained: float = 1.5  # times the noise that is said; less may be noise, which few know better than this
+    correlated: float = 0.3  # between residuals in a row: less may be noise that is not said, for white noise has none
+    worse: float = 2.0  # where nothing explains everything, times that must be left without a mix-up to name it
+    most_left: float = 0.1  # share of the samples' spread that it may leave then; a fit that leaves more has failed
+    alike: float = 1.01  # ratio of what two explanations leave: chance makes more than 1 % of a few hundred samples
+    tried: int = (
+        2  # mix-ups with which wrong numbers are fitted, those that explain most without, for most time goes there
+    )
+    apart: float = 3.0  # times what is left of the other tracks, which shows that a track may be of two points
+    places: int = 12  # at which the second point may begin or end at first: a part of the track between two shows it
+    rounds: int = 3  # times that each sample is then given to the point that explains it better
+    fewest: int = 20  # values from which a point is estimated: ten samples of both image coordinates
+    outlying: float = 6.0  # standard deviations of a wild sample; normal noise reaches them once in 500 million samples
+    few: int = 3  # wild samples that are worth naming,
+    few_of_all: float = 0.003  # and their share of all samples
+    most_wild: float = 0.15  # share of wild samples beyond which they are no exceptions, and none is left out
 
-CLEARLY = 10.0
-"""Logarithm of the likelihood ratio from which on one explanation is better than another."""
 
-WORSE = 2.0
-"""Ratio of what two explanations leave from which on a mix-up is named where neither explains everything."""
-
-MOST_LEFT = 0.1
-"""Share of the samples' own spread that such a mix-up may leave at most; a fit that leaves more has failed."""
-
-ALIKE = 1.01
-"""Ratio of what two explanations leave up to which the motion cannot tell them apart."""
-
-TRIED = 2
-"""Mix-ups with which numbers are fitted, those that explain most without."""
-
-APART = 3.0
-"""Ratio of what is left of one track to what is left of the others from which on its point may be another one."""
-
-FEWEST = 20
-"""Fewest values of a track from which a point is estimated."""
-
-PLACES = 12
-"""Places in a track at which another point may begin or end, before samples are given to one of the two."""
-
-ROUNDS = 3
-"""Times that samples are given to one of two points."""
-
-OUTLYING = 6.0
-"""Standard deviations from which on a sample is an outlier; `FEW` of them, or a share of them, are worth naming."""
-
-FEW = (3, 0.003)
-
-MOST_FAR = 0.15
-"""Share of the samples that may be left out as outliers at most."""
+LIMITS = Limits()
 
 DEVIATION = 1.4826
 """Standard deviation of normal noise, in medians of its size."""
 
 OFFSETS = tuple(np.linspace(-LARGEST_OFFSET, LARGEST_OFFSET, 11).tolist())
-"""Offsets in seconds of which the best one begins a fit."""
+"""Offsets in seconds of which the best one begins a fit: from 0.05 s away it finds the right one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,16 +88,19 @@ def search(tracks: tuple[Track, ...], noise: float | None) -> Found:
         if switch is not None:
             fits = [fit(switch.tracks, mix_up, ()) for mix_up in MIX_UPS]
             parted = _best(fits, keys, noise)
-            if _explained(best, noise) or parted.gain(best) < CLEARLY:
+            if _explained(best, noise) or parted.gain(best) < LIMITS.clearly:
                 switch = None
             else:
                 best = parted
     best = _trimmed(_fewest(best), noise)
-    explained, estimates, needed = _explained(best, noise), _estimates(best, keys), _needed(best, keys)
+    explained, needed = _explained(best, noise), _needed(best, keys)
+    estimates = {key: Estimate(np.zeros(each.size), math.inf, 0.0) for key, each in CAUSES.items()}
+    estimates |= best.estimates(keys)
     if switch is not None:
         needed = {"mismatch": (bare, ())} | needed
-    alike = [each for each in screened[1:] if each.rms < ALIKE * bare.rms + FINEST / 10]
-    hidden = [key for key in CAUSES if key not in keys or not SURELY * estimates[key].deviation < CAUSES[key].usual]
+    alike = [each for each in screened[1:] if each.rms < LIMITS.alike * bare.rms + FINEST / 10]
+    told = [key for key in keys if LIMITS.surely * estimates[key].deviation < CAUSES[key].usual]
+    hidden = [key for key in CAUSES if key not in told]
     if explained and best.mix_up == "nothing":
         hidden += [MIX_UPS[each.mix_up].key for each in alike]
     not_told = tuple(key for key in dict.fromkeys(hidden) if key not in needed)
@@ -130,7 +116,7 @@ def _needed(best: Fit, keys: Sequence[str]) -> dict[str, tuple[Fit, tuple[str, .
     alone = {key: _without(best, _rest(best, key)) for key in best.wrong}
     others = [key for key in keys if key not in best.wrong]
     for key, without in sorted(alone.items(), key=lambda each: -each[1].squares):
-        as_good = [other for other in others if best.gain(_without(best, [*_rest(best, key), other])) < CLEARLY]
+        as_good = [other for other in others if best.gain(_without(best, [*_rest(best, key), other])) < LIMITS.clearly]
         found[key] = without, tuple(as_good)
     return found
 
@@ -141,32 +127,26 @@ def _possible(tracks: Sequence[Track]) -> list[str]:
     rigid = all(np.abs(A + np.swapaxes(A, 1, 2)).max() <= 1e-6 * max(float(np.abs(A).max()), 1e-9) for A in motions)
     both = all(len(track.whole) for track in tracks)
     varying = not all(track.motion.signal and track.motion.signal.constant for track in tracks)
-    possible = {
-        "time offset": varying,
-        "gyro bias": rigid,
-        "scale drift": rigid,
-        "distortion ignored": both,
-        "rolling shutter": both and varying,
-    }
+    possible = {OFFSET: varying, BIAS: rigid, DRIFT: rigid, BEND: both, SHUTTER: both and varying}
     return [key for key in CAUSES if possible.get(key, True)]
 
 
 def _explained(found: Fit, noise: float | None) -> bool:
     """True if what a fit leaves looks like noise."""
     if noise is not None:
-        return found.rms <= UNEXPLAINED * max(noise, FINEST)
-    return found.rms <= FINEST or found.correlation <= WHITE
+        return found.rms <= LIMITS.unexplained * max(noise, FINEST)
+    return found.rms <= FINEST or found.correlation <= LIMITS.correlated
 
 
 def _trimmed(found: Fit, noise: float | None) -> Fit:
     """Fit without the few samples that are far off, if it explains the rest and the fit of all does not."""
     if _explained(found, noise):
         return found
-    far = OUTLYING * max(DEVIATION * float(np.median(np.abs(found.values))), noise or 0.0, FINEST)
+    far = LIMITS.outlying * max(DEVIATION * float(np.median(np.abs(found.values))), noise or 0.0, FINEST)
     pairs = zip(found.tracks, found.residuals, strict=True)
     near = [(track, (np.nan_to_num(np.abs(left)) <= far).all(axis=1, keepdims=True)) for track, left in pairs]
     tracks = tuple(replace(track, used=track.used & few) for track, few in near)
-    if sum(track.count for track in tracks) < (1 - MOST_FAR) * len(found.values):
+    if sum(track.count for track in tracks) < (1 - LIMITS.most_wild) * len(found.values):
         return found
     other = fit(tracks, found.mix_up, [*found.wrong], found.wrong)
     return other if _explained(other, noise) else found
@@ -179,9 +159,9 @@ def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> 
     if _explained(best, noise):
         return best
     better = sorted((each for each in others if each.typical < first.typical), key=lambda each: each.typical)
-    for other in (_joint(each, keys) for each in better[:TRIED]):
-        moved = float(np.median([track.spread for track in other.tracks]))
-        if _explained(other, noise) or WORSE * other.typical < min(best.typical, WORSE * MOST_LEFT * moved):
+    for other in (_joint(each, keys) for each in better[: LIMITS.tried]):
+        most = LIMITS.most_left * float(np.median([track.spread for track in other.tracks]))
+        if _explained(other, noise) or other.typical < min(best.typical / LIMITS.worse, most):
             best = min(best, other, key=lambda each: (not _explained(each, noise), each.typical))
     return best
 
@@ -189,7 +169,7 @@ def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> 
 def _joint(bare: Fit, keys: Sequence[str]) -> Fit:
     """Fit of all numbers, from the offset that explains the samples best by itself."""
     tracks, mix_up = bare.tracks, bare.mix_up
-    starts = [{"time offset": np.array([late])} for late in (OFFSETS if "time offset" in keys else (0.0,))]
+    starts = [{OFFSET: np.array([late])} for late in (OFFSETS if OFFSET in keys else (0.0,))]
     start = min(starts, key=lambda start: sum(_squares(track, mix_up, start) for track in tracks))
     return min(fit(tracks, mix_up, keys, start), bare, key=lambda each: each.squares)
 
@@ -216,7 +196,7 @@ def _fewest(best: Fit) -> Fit:
         weights = {key: _weight(key, estimate) for key, estimate in best.estimates([*best.wrong]).items()}
         key = min(weights, key=weights.__getitem__)
         without = _without(best, _rest(best, key))
-        if weights[key] >= 1 and best.gain(without) > CLEARLY:
+        if weights[key] >= 1 and best.gain(without) > LIMITS.clearly:
             break
         best = without
     return best
@@ -226,22 +206,14 @@ def _weight(key: str, estimate: Estimate) -> float:
     """Number below 1 if an estimate is not worth naming: not sure, small, or at the edge of its range."""
     cause, size = CAUSES[key], float(np.linalg.norm(estimate.value))
     inside = float(np.abs(estimate.value).max()) < 0.98 * cause.largest
-    return min(estimate.sure / SURELY, size / cause.smallest) * inside
-
-
-def _estimates(best: Fit, keys: Sequence[str]) -> dict[str, Estimate]:
-    """Every number by itself, beside the ones that were found."""
-    own = [*best.wrong]
-    found = best.estimates(own) if own else {}
-    found |= {key: best.estimates([*own, key])[key] for key in keys if key not in own}
-    return {key: found.get(key, Estimate(np.zeros(cause.size), math.inf, 0.0)) for key, cause in CAUSES.items()}
+    return min(estimate.sure / LIMITS.surely, size / cause.smallest) * inside
 
 
 def _other_mix_ups(best: Fit) -> tuple[str, ...]:
     """Mix-ups that explain the samples as well, by key, and with their sentence if the key is the best one's."""
     own = MIX_UPS[best.mix_up].key
     others = [name for name in MIX_UPS if name not in ("nothing", best.mix_up)]
-    as_good = [MIX_UPS[name] for name in others if best.gain(_without(best, best.wrong, name)) < CLEARLY]
+    as_good = [MIX_UPS[name] for name in others if best.gain(_without(best, best.wrong, name)) < LIMITS.clearly]
     return tuple(dict.fromkeys(each.sentence if each.key == own else each.key for each in as_good))
 
 
@@ -251,7 +223,7 @@ def _switched(found: Fit, noise: float | None) -> Switch | None:
         return None
     number = int(np.argmax(found.each))
     others = float(np.median(np.delete(found.each, number)))
-    if found.each[number] < APART * max(others, noise or 0.0, FINEST):
+    if found.each[number] < LIMITS.apart * max(others, noise or 0.0, FINEST):
         return None
     rest = tuple(track for k, track in enumerate(found.tracks) if k != number)
     inside = _second_point(found.tracks[number], found.mix_up, fit(rest, found.mix_up, [*found.wrong]).wrong)
@@ -264,14 +236,14 @@ def _second_point(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> Flag
 
     def left(inside: Flags) -> float:
         parts = track.parted(inside)
-        return sum(_squares(part, mix_up, wrong) if part.count >= FEWEST else math.inf for part in parts)
+        return sum(_squares(part, mix_up, wrong) if part.count >= LIMITS.fewest else math.inf for part in parts)
 
-    places = np.unique(np.linspace(0, len(number), PLACES + 1).astype(int)).tolist()
+    places = np.unique(np.linspace(0, len(number), LIMITS.places + 1).astype(int)).tolist()
     spans = [(number >= a) & (number < b) for k, a in enumerate(places) for b in places[k + 1 :] if a > 0]
     inside = min(spans, key=left, default=number < 0)
-    for _ in range(ROUNDS):  # each sample goes to the point that explains it better, in one run
+    for _ in range(LIMITS.rounds):  # each sample goes to the point that explains it better, in one run
         parts = track.parted(inside)
-        if min(part.count for part in parts) < FEWEST:
+        if min(part.count for part in parts) < LIMITS.fewest:
             return None
         images = [seen(track, guess(part, mix_up, wrong)[0], mix_up, wrong).outputs for part in parts]
         outside, within = (np.nansum((image - track.outputs) ** 2, axis=1) for image in images)
@@ -290,10 +262,10 @@ def _largest_run(gain: Array) -> Flags:
 
 def _outliers(best: Fit, noise: float | None) -> tuple[int, int]:
     """Number of samples that are far off, 0 if they are few, and of all samples."""
-    far = max(OUTLYING * max(best.rms, noise or 0.0), 10 * FINEST)
+    far = max(LIMITS.outlying * max(best.rms, noise or 0.0), 10 * FINEST)
     wild = total = 0
     for track, point in zip(best.tracks, best.points, strict=True):
         apart = np.abs(track.sampled - seen(track, point, best.mix_up, best.wrong).outputs)
         wild += int((np.nan_to_num(apart) > far).any(axis=1).sum())
         total += int(np.isfinite(track.sampled).any(axis=1).sum())
-    return (wild if wild >= max(FEW[0], FEW[1] * total) else 0), total
+    return (wild if wild >= max(LIMITS.few, LIMITS.few_of_all * total) else 0), total

@@ -12,24 +12,32 @@ import sympy as sp
 from percept_obs.compile import Array, Flags, Indices, vectorised
 from percept_obs.recording import Recording
 from percept_obs.recording.reckoning import point_on_rays
-from percept_obs.studies.diagnosis.causes import CAUSES, LARGEST_OFFSET, MIX_UPS
+from percept_obs.studies.diagnosis.causes import (
+    BEND,
+    BIAS,
+    CAUSES,
+    DRIFT,
+    FOCAL,
+    LARGEST_OFFSET,
+    MIX_UPS,
+    OFFSET,
+    SHUTTER,
+)
 from percept_obs.studies.diagnosis.paths import SPINS, Path, path
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
 
 MOST_SAMPLES = 300
-"""Samples of a track at most, evenly spread."""
-
-OFFSET, FOCAL, BEND, BIAS, DRIFT, SHUTTER = CAUSES
+"""Samples of a track at most, evenly spread: more make a diagnosis slower and hardly surer."""
 
 REACH = 1.5 * LARGEST_OFFSET
 """Seconds before and after a track for which the motion is needed at most."""
 
 SPIKE = 12.0
-"""Medians of such differences by which a sample that is left out at first differs from the median of its neighbours."""
+"""Usual distances from the median of its neighbours that make a sample a spike: 8 deviations of normal noise."""
 
 SMOOTH = 5e-3
-"""Difference from the median of neighbours, in focal lengths, that a turn of the track explains."""
+"""Focal lengths that come on top: where a smooth track turns, a sample lies so far from its neighbours' median."""
 
 FAR = 1e3
 """Image coordinate that stands for an infinite one."""
@@ -119,17 +127,17 @@ def _image(surface: ImagingSurface) -> Callable[..., list[Array]]:
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """Image coordinates of a track, shape (K, m), with their derivatives by the point and by each cause."""
+    """Image coordinates of a track, shape (K, m), with their derivatives by the point and by causes' numbers."""
 
     outputs: Array
     by_point: Array
-    by_cause: Mapping[str, Array]
+    by_cause: Array
 
 
 def seen(track: Track, point: Array, mix_up: str, wrong: Mapping[str, Array], asked: Sequence[str] = ()) -> Seen:
     """Images of a point, given by its position (X, 1) at the beginning but for a factor, under wrong numbers.
 
-    Derivatives are those by the point, shape (K, m, 4), and by the causes that are asked for, shape (K, m, q).
+    Derivatives are those by the point, shape (K, m, 4), and by the q numbers of the causes asked for, shape (K, m, q).
     """
     number = numbers_of(wrong)
     late, row, more, bend = (float(number[key][0]) for key in (OFFSET, SHUTTER, FOCAL, BEND))
@@ -154,7 +162,8 @@ def seen(track: Track, point: Array, mix_up: str, wrong: Mapping[str, Array], as
         shifted = -point[3] * (way.times - way.times[0])[:, None] * way.b
         changes = way.change(times, np.concatenate([turned, shifted[:, :, None]], axis=2))
         found |= {BIAS: by_position @ changes[:, :, :3], DRIFT: by_position @ changes[:, :, 3:]}
-    return Seen((1 + more) * bent, by_position @ maps, {key: found[key] for key in asked})
+    by_cause = np.concatenate([np.empty((count, m, 0)), *(found[key] for key in asked)], axis=2)
+    return Seen((1 + more) * bent, by_position @ maps, by_cause)
 
 
 def numbers_of(wrong: Mapping[str, Array]) -> dict[str, Array]:
