@@ -10,6 +10,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from browsers import OPTIONS, knowing
+from browsers import playwright as playwright_here
 from front_ends import TRIALS, in_a_saved_file, in_jupyterlab, in_marimo, in_notebook, in_voila, marimo
 from jupyter_harness import jupyterlab
 from lab_alone import stated_policy
@@ -32,9 +34,7 @@ EVERYWHERE = [f"{end} in {browser}" for browser in BROWSERS for end in OPEN]
 
 @pytest.fixture(scope="module")
 def playwright():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
+    with playwright_here() as playwright:
         yield playwright
 
 
@@ -44,7 +44,7 @@ def browsers(request, playwright):
 
     def chromium():
         path = request.getfixturevalue("chromium")
-        return playwright.chromium.launch(executable_path=path, args=["--no-sandbox", "--disable-gpu"])
+        return playwright.chromium.launch(executable_path=path, args=list(OPTIONS))
 
     def firefox():
         if Path(playwright.firefox.executable_path).exists():
@@ -56,7 +56,8 @@ def browsers(request, playwright):
         return playwright.firefox.launch(channel="moz-firefox", executable_path=own)
 
     opened = {}
-    yield lambda name: opened.get(name) or opened.setdefault(name, {"Chromium": chromium, "Firefox": firefox}[name]())
+    ways = {"Chromium": chromium, "Firefox": firefox}
+    yield lambda name: opened.get(name) or opened.setdefault(name, knowing(ways[name]()))
     for browser in opened.values():
         browser.close()
 

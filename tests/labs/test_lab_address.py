@@ -7,7 +7,7 @@ import pytest
 from hostile_messages import messages
 from javascript import run_script
 from lab_alone import DRAWN
-from lab_browser import RESET, UNFOLD, control
+from lab_browser import control
 from lab_settings import FRONT, random_settings, whole_model
 from points_settings import random_settings as random_points
 from sample_sizes import sampled
@@ -165,7 +165,7 @@ def test_a_link_is_short_and_readable_and_an_anchor_of_the_page_is_none(node, mo
     assert last == {"notice": "", "visited": settings, "view": lab.looks.opening}
 
 
-SETTINGS = "(which) => [...window.perceptObsLabs][which].settings"
+SETTINGS = "(which) => tests.settings(which)"
 
 
 @pytest.fixture
@@ -182,7 +182,7 @@ def page(browser, tmp_path):
         page.goto("about:blank")
         page.goto((tmp_path / "lab.html").as_uri() + link)
         page.wait_for_function(DRAWN)
-        page.evaluate(UNFOLD)
+        page.evaluate("tests.unfold()")
         return page
 
     yield shown
@@ -197,7 +197,7 @@ def of_one(lab):
 def rested_at(page, which, place, value):
     """Wait until a lab shows a setting."""
     page.wait_for_function(
-        "([which, place, value]) => JSON.stringify([...window.perceptObsLabs][which].settings[place]) === value",
+        "([which, place, value]) => JSON.stringify(tests.settings(which)[place]) === value",
         arg=[which, place, json.dumps(value, separators=(",", ":"))],
     )
     page.wait_for_function(DRAWN)
@@ -273,7 +273,7 @@ def test_velocities_in_samples_are_saved_chosen_linked_and_undone(page):
     shown = page(text)
     slider, source, duration = (shown.locator(control(name)) for name in ("v_c1", "velocities", "duration number"))
     assert slider.is_hidden()
-    curve = "() => Array.from([...window.perceptObsLabs][0].shown.truth)"
+    curve = "() => Array.from(tests.first().shown.truth)"
     measured = shown.evaluate(curve)
     np.testing.assert_allclose(measured, np.ravel(next(iter(lab.run().values())).truth), rtol=1e-9, atol=1e-9)
     duration.fill("2.5")
@@ -294,7 +294,7 @@ def test_velocities_in_samples_are_saved_chosen_linked_and_undone(page):
         rested_at(shown, 0, "velocities", velocities)
     shown.click(control("corollary 1"))
     rested_at(shown, 0, "velocities", "set")
-    shown.evaluate(RESET)
+    shown.evaluate("tests.reset()")
     rested_at(shown, 0, "velocities", "samples")
     assert shown.evaluate(SETTINGS, 0) == lab.settings
     rested_at(page(text, "#" + link), 0, "velocities", "samples")
@@ -339,7 +339,7 @@ def test_two_labs_of_a_page_each_read_their_own_part(page):
     assert shown.evaluate(SETTINGS, 0) == states[0]["settings"]
     assert shown.evaluate(SETTINGS, 1)["outputs"] == ["y1", "y2"]
     assert shown.evaluate("scrollY") > 100
-    shown.evaluate("() => [...window.perceptObsLabs][0].change({ seed: 3 }, true)")
+    shown.evaluate("() => tests.first().change({ seed: 3 }, true)")
     shown.wait_for_function(  # a lab that came into view late was not unfolded
         "() => location.hash.replace(/;look[^&]*/, '') === '#observer-2=1;seed=7&points=1;spin=0.5&observer=1;seed=3'"
     )

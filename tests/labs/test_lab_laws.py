@@ -4,8 +4,6 @@ import pytest
 from lab_alone import DRAWN, opened
 from lab_browser import (
     EVENTS,
-    RESET,
-    UNFOLD,
     assert_fits,
     assert_has,
     assert_is_python,
@@ -107,7 +105,7 @@ def test_each_chart_says_in_words_what_it_shows(fresh, kind):
 def test_every_control_is_reached_and_moved_by_keyboard(browser, kind):
     page = opened(browser, MAKE[kind](**WIDE_OPEN[kind]))
     page.wait_for_function(DRAWN)
-    page.evaluate(UNFOLD)
+    page.evaluate("tests.unfold()")
     for name in MORE[kind]:
         page.check(control(name))
     reached = set(moved_by_keyboard(page))
@@ -130,8 +128,7 @@ def test_a_setting_stands_in_the_group_of_its_topic_and_every_control_is_two_pre
         if title.evaluate("(title) => !title.parentElement.open"):
             title.click()
         assert page.locator(".drawer details[open]").count() == 1
-        lost = title.evaluate("""(title) => [...title.parentElement.querySelectorAll("[data-control]")].filter((node) =>
-            !node.closest("[hidden]") && !node.checkVisibility()).map((node) => node.dataset.control)""")
+        lost = title.evaluate("(title) => tests.lost(title)")
         assert lost == []
     page.click(control("more"))
     assert page.locator(".drawer").is_hidden()
@@ -146,7 +143,7 @@ def test_random_events_break_nothing_and_reset_restores_everything(fresh, python
     assert MAKE[kind](**shown["settings"]).settings == shown["settings"]
     assert shown["problems"] == []
     assert_is_python(kind, shown, following=True)
-    fresh.evaluate(RESET)
+    fresh.evaluate("tests.reset()")
     rested(fresh, 60)
     assert state(fresh) == opening
     assert_is_python(kind, opening)

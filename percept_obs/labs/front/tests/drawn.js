@@ -1,5 +1,5 @@
 // A short mark of each scene of the labs, as it was found right by eye.  After a change that is meant, look at the
-// pages, and write the marks anew:   node tests/drawn.js [FOLDER]   A folder takes the scenes themselves, to compare.
+// pages, and write the marks anew:   npm run record [FOLDER]   A folder takes the scenes themselves, to compare.
 
 import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
@@ -7,8 +7,10 @@ import { LABS, scenesOf } from "./scenes.js";
 
 const FILE = new URL("drawn.json", import.meta.url);
 
+const nothing = () => {};
+
 /** Marks of the scenes of a lab by their names; `look` is shown each of them, and `marked` told each mark. */
-export async function marksOf(name, look = (_scene, _text) => {}, marked = (_scene, _mark) => {}) {
+export async function marksOf(name, { look = nothing, marked = nothing } = {}) {
   const marks = {};
   for await (const [scene, lines] of scenesOf(name)) {
     const text = lines.join("\n");
@@ -28,7 +30,9 @@ if (process.argv[1].endsWith("drawn.js")) {
   for (const name of Object.keys(LABS)) {
     const place = folder && `${folder}/${name}`;
     if (place) mkdirSync(place, { recursive: true });
-    all[name] = await marksOf(name, (scene, text) => place && writeFileSync(`${place}/${scene.replaceAll("/", "-").slice(0, 80)}`, text));
+    all[name] = await marksOf(name, {
+      look: (scene, text) => place && writeFileSync(`${place}/${scene.replaceAll("/", "-").slice(0, 80)}`, text),
+    });
   }
   writeFileSync(FILE, `{\n${Object.entries(all).map(([name, marks]) => `"${name}": ${JSON.stringify(marks)}`).join(",\n")}\n}\n`);
 }

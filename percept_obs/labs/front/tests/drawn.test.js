@@ -9,6 +9,6 @@ for (const name of Object.keys(LABS)) {
   test(`${name} draws and says what it did`, async () => {
     const [before, now] = [kept()[name], await marksOf(name)];
     const changed = Object.keys({ ...before, ...now }).filter((scene) => before[scene] !== now[scene]);
-    assert.deepEqual(changed, [], "look at these scenes; if they are right, run node tests/drawn.js");
+    assert.deepEqual(changed, [], "look at these scenes; if they are right, npm run record");
   });
 }

@@ -16,7 +16,7 @@ export const LABS = { observer: ObserverLab, points: PointsLab, structure: Struc
 const turn = () => new Promise((resolve) => setImmediate(resolve));
 
 /** Open a lab in a page of its own; `settings` are other ones than it opens with. */
-export async function opened(name, { settings = {}, view = {}, answers = null, ...options } = {}) {
+export async function opened(name, { settings = {}, view = {}, ...options } = {}) {
   const page = openPage({ still: true, ...options });
   const given = structuredClone(OPENED[name]);
   const model = await modelOf(readFileSync(new URL(`${name}_lab.gz`, FRONT)), given.model);
@@ -157,6 +157,17 @@ export async function* scenesOf(name) {
       if (!node?.seen || node.disabled) continue;
       const what = use(node);
       yield scene(`${group}: ${control}, ${what}`);
+      await again();
+      if (!summary.parentElement.open) summary.tell("click");
+    }
+    for (const wrong of ["0", "1e9", "-2.5", ""]) {
+      for (const field of seen("input").filter(({ type }) => type === "number")) {
+        if (!summary.parentElement.contains(field) || field.getAttribute("data-control") === "duration number") continue;
+        field.focus();
+        field.value = wrong;
+        field.tell("input");
+      }
+      yield scene(`${group}: "${wrong}" in every field`);
       await again();
       if (!summary.parentElement.open) summary.tell("click");
     }
