@@ -230,41 +230,6 @@ def test_a_link_opens_the_lab_as_it_was_and_a_drag_leaves_no_history(page):
 
 @pytest.mark.browser
 @pytest.mark.slow
-def test_back_and_forward_lead_from_link_to_link(page):
-    shown = page(of_one(points_lab()), "#points=1;spin=0.5")
-    rested_at(shown, 0, "spin", 0.5)
-    shown.evaluate("location.hash = '#points=1;spin=0.7'")
-    rested_at(shown, 0, "spin", 0.7)
-    shown.select_option(control("hold"), "exact")
-    shown.wait_for_function("() => location.hash.includes('exact')")
-    shown.go_back()
-    rested_at(shown, 0, "spin", 0.5)
-    assert shown.evaluate(SETTINGS, 0)["hold"] == "zero"
-    shown.go_forward()
-    rested_at(shown, 0, "hold", "exact")
-
-
-@pytest.mark.browser
-@pytest.mark.slow
-def test_a_hostile_address_leaves_the_page_at_its_opening_state(page):
-    lab = observer_lab(outputs=["y1"], kept={})
-    shown = page(of_one(lab), HOSTILE[0][1])
-    said = ""
-    for _, text in [*HOSTILE[1:200:20], ("observer", "#observer=1;seed=" + "3" * 1_000_000)]:
-        shown.wait_for_function(
-            "(said) => ![said, ''].includes(document.querySelector('.notice').textContent)", arg=said
-        )
-        said = shown.inner_text(".notice")
-        assert said.startswith("The link in this page's address is not followed: ")
-        assert shown.evaluate(SETTINGS, 0) == lab.settings
-        shown.evaluate("(text) => { location.hash = text; }", text)
-    shown.select_option(control("surface"), "plane")
-    shown.wait_for_function("() => location.hash.includes('surface=plane') && location.hash.length < 200")
-    assert shown.locator(".notice").is_hidden()
-
-
-@pytest.mark.browser
-@pytest.mark.slow
 def test_velocities_in_samples_are_saved_chosen_linked_and_undone(page):
     times = np.linspace(0, 2, 21)
     v_c = np.column_stack([-0.2 - 0.1 * np.sin(times), -0.2 + 0 * times, 0 * times])

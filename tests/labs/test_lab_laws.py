@@ -116,25 +116,6 @@ def test_every_control_is_reached_and_moved_by_keyboard(browser, kind):
     page.close()
 
 
-def test_a_setting_stands_in_the_group_of_its_topic_and_every_control_is_two_presses_away(browser, kind):
-    page = opened(browser, MAKE[kind](**OPENING[kind]))
-    page.wait_for_function(DRAWN)
-    page.click(control("more"))
-    placed = {name: setting.topic for name, setting in MAKE[kind].schema.items() if setting.topic}
-    assert len(placed) > 3
-    for name, topic in placed.items():
-        assert page.locator(f".group-{topic} {control(name)}").count(), f"{name} is not in the group {topic}"
-    for title in page.locator(".drawer summary").all():
-        if title.evaluate("(title) => !title.parentElement.open"):
-            title.click()
-        assert page.locator(".drawer details[open]").count() == 1
-        lost = title.evaluate("(title) => tests.lost(title)")
-        assert lost == []
-    page.click(control("more"))
-    assert page.locator(".drawer").is_hidden()
-    page.close()
-
-
 def test_random_events_break_nothing_and_reset_restores_everything(fresh, python, kind):
     opening, wanted = state(fresh), usable(fresh)
     assert wanted - used_at_random(fresh, 11, wanted, EVENTS, MOST_SAMPLES[kind]) == set()

@@ -3,10 +3,8 @@
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-SCRIPTS = "\n".join(
-    Path(__file__).with_name(f"{name}.js").read_text("utf-8")
-    for name in ("page", "pictures", "beside", "events", "widths")
-)
+FILES = ("page", "pictures", "beside", "events", "widths")
+SCRIPTS = "\n".join(Path(__file__).with_name(f"{name}.js").read_text("utf-8") for name in FILES)
 OPTIONS = ("--no-sandbox", "--disable-gpu")
 _open = ExitStack()
 _kept = {}

@@ -132,9 +132,6 @@
       return [...lab.querySelectorAll("canvas, .actions, .control")].filter((node) =>
         node.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).map((node) => node.className);
     },
-    /** Controls of an open group that cannot be seen, though nothing says that they should not. */
-    lost: (title) => [...title.parentElement.querySelectorAll("[data-control]")].filter((node) =>
-      !node.closest("[hidden]") && !node.checkVisibility()).map((node) => node.dataset.control),
     /** Serious and critical findings of axe-core, and how many rules hold. */
     async violations() {
       // Of rules that hold only one place is told: thousands of places would take longer than the search.

@@ -355,5 +355,10 @@ export function openPage({ still = false, hash = "" } = {}) {
     }
     now = end;
   };
-  return { document, window, copied, pass, told: () => document.body.told() };
+  /** Follow a link within the page. */
+  const go = (to) => {
+    window.location.hash = to;
+    for (const act of listeners.hashchange ?? []) act();
+  };
+  return { document, window, copied, pass, go, told: () => document.body.told() };
 }

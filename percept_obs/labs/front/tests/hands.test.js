@@ -388,3 +388,49 @@ test("a choice of unknowns says its corollary, its determinant, and why it is re
   assert.equal(lab.settings.step, step);
   lab.close();
 });
+
+test("a link opens the lab as it was, the address follows the hand, and a hostile one changes nothing", async () => {
+  const open = await hand("points", { hash: "#points=1;spin=0.5" });
+  const { lab, page, rest } = open;
+  const { location } = page.window;
+  const go = async (to) => {
+    page.go(to);
+    await rest();
+  };
+  assert.equal(lab.settings.spin, 0.5);
+  await go("#points=1;spin=0.7");
+  assert.equal(lab.settings.spin, 0.7);
+  lab.change({ hold: "exact" }, true);
+  await rest();
+  assert.match(location.hash, /^#points=1;.*hold=exact/);
+  const [link, there] = [location.hash, lab.settings];
+  for (const hostile of ["#points=1;spin=x", "#observer=1;seed=3", "#points=9;spin=1", `#points=1;spin=${"3".repeat(1e6)}`]) {
+    await go(hostile);
+    assert.match(textOf(open, ".notice"), /^The link in this page's address is not followed: /);
+    assert.equal(lab.settings, there);
+  }
+  lab.undo();
+  await rest();
+  assert.equal(lab.settings.hold, "zero");
+  await go(link);
+  assert.deepEqual(lab.settings, there);
+  lab.close();
+});
+
+for (const name of ["observer", "points", "structure"]) {
+  test(`a setting stands in the group of its topic, and one group is open at a time: ${name}`, async () => {
+    const { lab, find, root, seen } = await hand(name);
+    use(find("more"));
+    const placed = Object.entries(lab.model.schema).filter(([, { topic }]) => topic);
+    assert.ok(placed.length > 3);
+    for (const [setting, { topic }] of placed)
+      assert.ok(root.querySelector(`.group-${topic} [data-control="${setting}"]`), `${setting} is not in ${topic}`);
+    for (const title of seen("summary")) {
+      if (!title.parentElement.open) title.tell("click");
+      assert.deepEqual(root.querySelectorAll("details").filter(({ open }) => open), [title.parentElement]);
+    }
+    use(find("more"));
+    assert.equal(find("undo").seen, false);
+    lab.close();
+  });
+}
