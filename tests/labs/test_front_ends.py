@@ -16,7 +16,6 @@ from front_ends import TRIALS, in_a_saved_file, in_jupyterlab, in_marimo, in_not
 from jupyter_harness import jupyterlab
 from lab_alone import stated_policy
 from needs import missing
-from sample_sizes import sampled
 
 from percept_obs.labs.shared.lab import BUNDLE
 from percept_obs.site.front_ends import BROWSERS, FRONT_ENDS, INSTALL, POLICY, RULES, TRIED, page
@@ -29,7 +28,11 @@ OPEN = {
     "saved file": (in_a_saved_file, "percept_obs", "folder"),
 }
 """For each: the function that opens it, the module that it needs, and the fixture to open it with."""
-EVERYWHERE = [f"{end} in {browser}" for browser in BROWSERS for end in OPEN]
+EVERYWHERE = [
+    pytest.param(f"{end} in {browser}", marks=[pytest.mark.night] * (f"{end} in {browser}" != "saved file in Chromium"))
+    for browser in BROWSERS
+    for end in OPEN
+]
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +84,7 @@ def marimo_apps(tmp_path_factory):
         yield lambda: servers.enter_context(marimo(tmp_path_factory.mktemp("marimo")))
 
 
-@pytest.fixture(scope="module", params=sampled(["saved file in Chromium"], EVERYWHERE))
+@pytest.fixture(scope="module", params=EVERYWHERE)
 def shown(request, browsers, tmp_path_factory):
     """Labs in a front end, in a browser."""
     name, _, browser = request.param.partition(" in ")

@@ -19,7 +19,6 @@ from lab_browser import (
     usable,
     used_at_random,
 )
-from sample_sizes import across
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 
@@ -64,7 +63,7 @@ def python(kind):
 DRAGS = [drag_by_mouse, drag_by_touch, drag_by_keys]
 
 
-@pytest.mark.parametrize(("kind", "drag"), across([*MAKE], DRAGS), indirect=["kind"])
+@pytest.mark.parametrize("drag", DRAGS)
 def test_what_is_dragged_follows_the_hand(fresh, python, kind, drag):
     before = state(fresh)
     drag(fresh, control(HANDLE[kind]))

@@ -32,8 +32,6 @@ lab
 """
 EVENTS = sampled(100, 10_000)
 """Random events in each lab, about one for each control."""
-MOVED = sampled(4, 1)
-"""One in so many controls that the Tab key reaches is moved by its keys."""
 
 
 def usable(page):
@@ -248,7 +246,7 @@ MOVES = {
 
 
 def moved_by_keyboard(page, moves=MappingProxyType(MOVES)):
-    """Names of the controls on which the Tab key comes by, all that can be used, one in `MOVED` moved by keys."""
+    """Names of the controls on which the Tab key comes by, all that can be used and that keys move there and back."""
     page.evaluate("tests.unfold()")
     wanted = set(page.evaluate("tests.stops()"))
     reached = []
@@ -260,7 +258,7 @@ def moved_by_keyboard(page, moves=MappingProxyType(MOVES)):
             break
         reached.append(now["name"])
         there, back = moves.get(now["kind"], ("", ""))
-        if there and len(reached) % MOVED == 0:
+        if there:
             page.keyboard.press(there)
             page.keyboard.press(back)
             moved = page.evaluate("tests.focused()")
