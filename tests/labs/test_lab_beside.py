@@ -27,7 +27,7 @@ def with_worker(show, lab, **options):
     page = show(lab, answers=answered, **options)
     rested(page)
     page.evaluate("tests.touch()")
-    page.wait_for_function("tests.beside()")
+    page.wait_for_function("() => tests.beside()")
     rested(page)
     return page
 
@@ -88,7 +88,7 @@ def test_a_host_that_gives_no_bundle_has_a_worker_of_the_module_that_it_imported
         widget.get = (name) => (name === "_esm" ? undefined : get(name));  // as in marimo
     }""")
     page.evaluate("tests.touch()")
-    page.wait_for_function("tests.beside()")
+    page.wait_for_function("() => tests.beside()")
     rested(page)
     assert [worker.url for worker in page.workers] == ["http://lab.test/lab.js"]
     assert_equals_python(state(page))

@@ -121,7 +121,7 @@ def page_of(browser, tmp_path):
         page.on("console", lambda said: said.type == "error" and wrong.append(said.text))
         page.goto((tmp_path / "lab.html").as_uri())
         page.set_default_timeout(15_000)
-        page.wait_for_function("tests.ready()")
+        page.wait_for_function("() => tests.ready()")
         page.wait_for_function(DRAWN)
         at_the_end(page)
         pages.append(page)

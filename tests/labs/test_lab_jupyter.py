@@ -239,4 +239,4 @@ def test_an_error_in_a_callback_reaches_the_log_console(browser_page, folder):
     handle = page.locator(".noUi-handle")
     handle.focus()
     handle.press("ArrowRight")
-    page.wait_for_function("tests.log()")
+    page.wait_for_function("() => tests.log()")

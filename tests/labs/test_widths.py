@@ -21,7 +21,7 @@ def test_a_saved_lab_fits_its_window(browser, tmp_path, name):
     page = browser.new_page(offline=True)
     LABS[name]().save(tmp_path / "lab.html")
     page.goto((tmp_path / "lab.html").as_uri())
-    page.wait_for_function("tests.allDrawn()")
+    page.wait_for_function("() => tests.allDrawn()")
     looked = assert_fits(page, name)
     page.evaluate("tests.unfold()")
     looked += assert_fits(page, f"{name}, with its drawer")

@@ -161,7 +161,7 @@ def test_every_kind_of_page_fits_its_window_and_all_that_can_be_pressed_can_be_r
     page, looked = browser.new_page(offline=True), 0
     for path in to_look_at(pages):
         page.goto(path.as_uri())
-        page.wait_for_function("tests.allDrawn()")
+        page.wait_for_function("() => tests.allDrawn()")
         looked += assert_fits(page, path)
     print(f"{len(to_look_at(pages))} of {len(written(pages))} pages, {len(WIDTHS)} widths: {looked} controls reached")
     page.close()

@@ -16,7 +16,7 @@ def first_screen(browser, lab, size=SIZES["cell"], **options):
     page = opened(browser, lab, viewport=dict(zip(("width", "height"), size, strict=True)), **moving)
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.set_default_timeout(15_000)
-    page.wait_for_function("tests.ready()")
+    page.wait_for_function("() => tests.ready()")
     yield page
     assert wrong == []
     page.close()
@@ -35,7 +35,7 @@ def asked(page, name, answer=0):
     page.click(control(f"answer {answer}"))
     page.wait_for_function(DRAWN)
     at_the_end(page)
-    page.wait_for_function("tests.watched()")
+    page.wait_for_function("() => tests.watched()")
 
 
 def overlaps(page):

@@ -84,7 +84,7 @@ def open_unfolded(page, name):
 
 def rested(page, patience=30):
     """Wait until every lab shows its latest settings and Python has answered."""
-    page.wait_for_function("tests.rested()", timeout=1000 * patience)
+    page.wait_for_function("() => tests.rested()", timeout=1000 * patience)
 
 
 def painted(page):
