@@ -11,6 +11,7 @@ import sys
 from collections import Counter
 from functools import cache, partial
 
+import browsers
 import hypothesis
 import platformdirs
 import pytest
@@ -23,6 +24,8 @@ os.environ["MPLBACKEND"] = "Agg"
 # Kernels and servers with a home of their own take loops in machine code from here too.
 os.environ.setdefault("NUMBA_CACHE_DIR", str(platformdirs.user_cache_path("percept_obs")))
 
+IN_BROWSER = set()
+"""Files of which a test wants a browser."""
 EXAMPLES = sampled(25, 100)
 hypothesis.settings.register_profile("here", deadline=None, max_examples=EXAMPLES)
 hypothesis.settings.register_profile("ci", deadline=None, max_examples=EXAMPLES, derandomize=True, database=None)
@@ -30,23 +33,32 @@ hypothesis.settings.load_profile("ci" if os.environ.get("CI") == "true" else "he
 
 
 def pytest_itemcollected(item):
-    """A test of a page that fails is tried once more, for its browser may have been kept from the processor.
+    """A test of a page that waited too long is tried once more, and what takes the night is left to it.
 
-    The last lines name it as RERUN, with its traceback: it or the page has a fault that is to be mended.
+    The processor may have been busy elsewhere.  What is wrong, or an exception, is never tried again.
     """
     if item.get_closest_marker("browser"):
-        item.add_marker(pytest.mark.flaky(reruns=1))
+        item.add_marker(pytest.mark.flaky(reruns=1, only_rerun=["^TimeoutError"]))
+    if item.get_closest_marker("night") and not sampled(False, True):
+        item.add_marker(pytest.mark.skip(reason="takes the night: run it with ALL_SAMPLES=1"))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item, nextitem):
+    """Close the browser that tests share once the next one is of another room, or wants none."""
+    found = yield
+    wants = nextitem and nextitem.path.parent == item.path.parent and nextitem.path in IN_BROWSER
+    if not wants:
+        browsers.close()
+    return found
 
 
 def pytest_collection_modifyitems(items):
     """Skip by day what runs at night.  Files that take long come first: a browser, the notebooks, many slow tests."""
     tests = Counter(item.path for item in items)
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
-    browser = {item.path for item in items if item.get_closest_marker("browser")}
-    rank = {path: (path not in browser, path.stem != "test_notebooks", -slow[path], -tests[path]) for path in tests}
-    for item in items:
-        if item.get_closest_marker("night") and not os.environ.get("ALL_SAMPLES"):
-            item.add_marker(pytest.mark.skip(reason="runs at night: ALL_SAMPLES=1"))
+    IN_BROWSER.update(item.path for item in items if item.get_closest_marker("browser"))
+    rank = {path: (path not in IN_BROWSER, path.stem != "test_notebooks", -slow[path], -tests[path]) for path in tests}
     items.sort(key=lambda item: rank[item.path])
 
 
@@ -101,13 +113,8 @@ def chromium():
 
 @pytest.fixture(scope="module")
 def browser(chromium):
-    """A browser without JupyterLab."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield browser
-        browser.close()
+    """The browser of this process, without JupyterLab, whose pages know `window.tests`."""
+    return browsers.shared(chromium)
 
 
 @pytest.fixture
@@ -140,9 +147,9 @@ def lab(browser, python):
 @pytest.fixture
 def fresh(lab):
     """The shared lab in its opening state."""
-    from lab_browser import RESET, rested
+    from lab_browser import rested
 
-    lab.evaluate(RESET)
+    lab.evaluate("tests.reset()")
     rested(lab)
     lab.locator(".views").scroll_into_view_if_needed()
     return lab

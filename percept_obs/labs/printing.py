@@ -7,6 +7,7 @@ from types import MappingProxyType
 from percept_obs.compile import integrator
 from percept_obs.figures import look
 from percept_obs.labs.desk import texts as desk
+from percept_obs.labs.desk.lab import derivation_desk
 from percept_obs.labs.observer import texts as observer
 from percept_obs.labs.observer.lab import observer_lab
 from percept_obs.labs.points import texts as points
@@ -34,13 +35,10 @@ MODELS = FRONT / "tests/models.json"
 
 
 def models() -> str:
-    """What Python hands to the page as each lab that draws runs opens, without the schema, as JSON."""
-    labs = {"observer": observer_lab(), "points": points_lab(), "structure": structure_lab()}
+    """What Python hands to the page as each lab opens, as JSON."""
+    labs = {"observer": observer_lab(), "points": points_lab(), "structure": structure_lab(), "desk": derivation_desk()}
     given = {
-        name: {
-            "model": {**{key: value for key, value in lab.model.items() if key != "schema"}, "written": lab.written},
-            "settings": lab.settings,
-        }
+        name: {"model": {**lab.model, "written": lab.written}, "settings": lab.settings, "view": lab.view}
         for name, lab in labs.items()
     }
     return json.dumps(given, ensure_ascii=False) + "\n"

@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import lab_alone
+from browsers import knowing
 from jupyter_harness import CHROMIUM_OPTIONS, IDLE, jupyterlab, lab_page, open_notebook
 from lab_browser import OPEN, rested, write_notebook
 from needs import found_chromium
@@ -301,7 +302,7 @@ def launched() -> Any:
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=found_chromium(), args=list(CHROMIUM_OPTIONS))
-        yield browser
+        yield knowing(browser)
         browser.close()
 
 

@@ -14,25 +14,9 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 SIZES = [(830, 600), (1240, 680), (390, 760)]
 (TYPED,) = EXAMPLE["typed"].values()
-SHOWN = """() => {
-    document.querySelectorAll(".unseen").forEach((node) => node.remove());  // it is heard
-    const controls = [...document.querySelectorAll("[data-control]")];
-    const [{ figures }] = window.perceptObsLabs;
-    const written = figures.flatMap(({ texts }) => texts.map(({ text }) => text));
-    return {
-        controls: controls.filter((node) => node.checkVisibility({ visibilityProperty: true })).length,
-        words: [document.querySelector(".percept-lab").innerText, ...written].join(" "),
-        across: document.documentElement.scrollWidth };
-}"""
-OVERLAPS = """() => [...window.perceptObsLabs][0].figures.flatMap(({ texts, width, height }) =>
-    texts.flatMap((one, k) => [
-    ...texts.slice(k + 1).filter(({ box }) => one.box[0] < box[2] && one.box[2] > box[0] && one.box[1] < box[3]
-        && one.box[3] > box[1]).map(({ text }) => [one.text, text]),
-    ...(one.box[0] < 0 || one.box[1] < 0 || one.box[2] > width || one.box[3] > height ? [[one.text, "cut"]] : []),
-]))"""
-PUT = "() => [...window.perceptObsLabs][0].replay.put(%d)"
-MINE = "() => { const [{ replay, answer }] = window.perceptObsLabs; return replay.motions(answer.picture).mine[0]; }"
-WHOLE = "() => [...window.perceptObsLabs][0].replay.at === null"
+PUT = "() => tests.first().replay.put(%d)"
+MINE = "() => tests.first().replay.motions(tests.first().answer.picture).mine[0]"
+WHOLE = "() => tests.first().replay.at === null"
 
 
 @pytest.mark.parametrize(("size", "scheme"), across(SIZES, ["light", "dark"]))
@@ -41,11 +25,11 @@ def test_it_opens_with_few_words_and_controls_and_large_pictures(browser, size, 
     for page in at_desk(browser, derivation_desk(), viewport=viewport, color_scheme=scheme):
         assert "A𝐗+b" in text_of(page, ".premises")
         assert text_of(page, ".slip") == "+b3 y1"
-        shown = page.evaluate(SHOWN)
+        shown = page.evaluate("tests.desk()")
         assert len(re.findall("[A-Za-z]{2,}", shown["words"])) <= 60, shown["words"]
         assert shown["controls"] <= 12
         assert shown["across"] <= size[0]
-        assert page.evaluate(OVERLAPS) == []
+        assert page.evaluate("tests.overlaps()") == []
         for picture, least in [(".view.motion", 240), (".view.misses", 100)]:
             assert page.locator(picture).bounding_box()["height"] >= least
 

@@ -10,11 +10,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from browsers import OPTIONS, knowing
+from browsers import playwright as playwright_here
 from front_ends import TRIALS, in_a_saved_file, in_jupyterlab, in_marimo, in_notebook, in_voila, marimo
 from jupyter_harness import jupyterlab
 from lab_alone import stated_policy
 from needs import missing
-from sample_sizes import sampled
 
 from percept_obs.labs.shared.lab import BUNDLE
 from percept_obs.site.front_ends import BROWSERS, FRONT_ENDS, INSTALL, POLICY, RULES, TRIED, page
@@ -27,14 +28,16 @@ OPEN = {
     "saved file": (in_a_saved_file, "percept_obs", "folder"),
 }
 """For each: the function that opens it, the module that it needs, and the fixture to open it with."""
-EVERYWHERE = [f"{end} in {browser}" for browser in BROWSERS for end in OPEN]
+EVERYWHERE = [
+    pytest.param(f"{end} in {browser}", marks=[pytest.mark.night] * (f"{end} in {browser}" != "saved file in Chromium"))
+    for browser in BROWSERS
+    for end in OPEN
+]
 
 
 @pytest.fixture(scope="module")
 def playwright():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
+    with playwright_here() as playwright:
         yield playwright
 
 
@@ -44,7 +47,7 @@ def browsers(request, playwright):
 
     def chromium():
         path = request.getfixturevalue("chromium")
-        return playwright.chromium.launch(executable_path=path, args=["--no-sandbox", "--disable-gpu"])
+        return playwright.chromium.launch(executable_path=path, args=list(OPTIONS))
 
     def firefox():
         if Path(playwright.firefox.executable_path).exists():
@@ -56,7 +59,8 @@ def browsers(request, playwright):
         return playwright.firefox.launch(channel="moz-firefox", executable_path=own)
 
     opened = {}
-    yield lambda name: opened.get(name) or opened.setdefault(name, {"Chromium": chromium, "Firefox": firefox}[name]())
+    ways = {"Chromium": chromium, "Firefox": firefox}
+    yield lambda name: opened.get(name) or opened.setdefault(name, knowing(ways[name]()))
     for browser in opened.values():
         browser.close()
 
@@ -80,7 +84,7 @@ def marimo_apps(tmp_path_factory):
         yield lambda: servers.enter_context(marimo(tmp_path_factory.mktemp("marimo")))
 
 
-@pytest.fixture(scope="module", params=sampled(["saved file in Chromium"], EVERYWHERE))
+@pytest.fixture(scope="module", params=EVERYWHERE)
 def shown(request, browsers, tmp_path_factory):
     """Labs in a front end, in a browser."""
     name, _, browser = request.param.partition(" in ")

@@ -7,7 +7,7 @@ import pytest
 from hostile_messages import messages
 from javascript import run_script
 from lab_alone import DRAWN
-from lab_browser import RESET, UNFOLD, control
+from lab_browser import control
 from lab_settings import FRONT, random_settings, whole_model
 from points_settings import random_settings as random_points
 from sample_sizes import sampled
@@ -165,7 +165,7 @@ def test_a_link_is_short_and_readable_and_an_anchor_of_the_page_is_none(node, mo
     assert last == {"notice": "", "visited": settings, "view": lab.looks.opening}
 
 
-SETTINGS = "(which) => [...window.perceptObsLabs][which].settings"
+SETTINGS = "(which) => tests.settings(which)"
 
 
 @pytest.fixture
@@ -182,7 +182,7 @@ def page(browser, tmp_path):
         page.goto("about:blank")
         page.goto((tmp_path / "lab.html").as_uri() + link)
         page.wait_for_function(DRAWN)
-        page.evaluate(UNFOLD)
+        page.evaluate("tests.unfold()")
         return page
 
     yield shown
@@ -197,7 +197,7 @@ def of_one(lab):
 def rested_at(page, which, place, value):
     """Wait until a lab shows a setting."""
     page.wait_for_function(
-        "([which, place, value]) => JSON.stringify([...window.perceptObsLabs][which].settings[place]) === value",
+        "([which, place, value]) => JSON.stringify(tests.settings(which)[place]) === value",
         arg=[which, place, json.dumps(value, separators=(",", ":"))],
     )
     page.wait_for_function(DRAWN)
@@ -230,41 +230,6 @@ def test_a_link_opens_the_lab_as_it_was_and_a_drag_leaves_no_history(page):
 
 @pytest.mark.browser
 @pytest.mark.slow
-def test_back_and_forward_lead_from_link_to_link(page):
-    shown = page(of_one(points_lab()), "#points=1;spin=0.5")
-    rested_at(shown, 0, "spin", 0.5)
-    shown.evaluate("location.hash = '#points=1;spin=0.7'")
-    rested_at(shown, 0, "spin", 0.7)
-    shown.select_option(control("hold"), "exact")
-    shown.wait_for_function("() => location.hash.includes('exact')")
-    shown.go_back()
-    rested_at(shown, 0, "spin", 0.5)
-    assert shown.evaluate(SETTINGS, 0)["hold"] == "zero"
-    shown.go_forward()
-    rested_at(shown, 0, "hold", "exact")
-
-
-@pytest.mark.browser
-@pytest.mark.slow
-def test_a_hostile_address_leaves_the_page_at_its_opening_state(page):
-    lab = observer_lab(outputs=["y1"], kept={})
-    shown = page(of_one(lab), HOSTILE[0][1])
-    said = ""
-    for _, text in [*HOSTILE[1:200:20], ("observer", "#observer=1;seed=" + "3" * 1_000_000)]:
-        shown.wait_for_function(
-            "(said) => ![said, ''].includes(document.querySelector('.notice').textContent)", arg=said
-        )
-        said = shown.inner_text(".notice")
-        assert said.startswith("The link in this page's address is not followed: ")
-        assert shown.evaluate(SETTINGS, 0) == lab.settings
-        shown.evaluate("(text) => { location.hash = text; }", text)
-    shown.select_option(control("surface"), "plane")
-    shown.wait_for_function("() => location.hash.includes('surface=plane') && location.hash.length < 200")
-    assert shown.locator(".notice").is_hidden()
-
-
-@pytest.mark.browser
-@pytest.mark.slow
 def test_velocities_in_samples_are_saved_chosen_linked_and_undone(page):
     times = np.linspace(0, 2, 21)
     v_c = np.column_stack([-0.2 - 0.1 * np.sin(times), -0.2 + 0 * times, 0 * times])
@@ -273,7 +238,7 @@ def test_velocities_in_samples_are_saved_chosen_linked_and_undone(page):
     shown = page(text)
     slider, source, duration = (shown.locator(control(name)) for name in ("v_c1", "velocities", "duration number"))
     assert slider.is_hidden()
-    curve = "() => Array.from([...window.perceptObsLabs][0].shown.truth)"
+    curve = "() => Array.from(tests.first().shown.truth)"
     measured = shown.evaluate(curve)
     np.testing.assert_allclose(measured, np.ravel(next(iter(lab.run().values())).truth), rtol=1e-9, atol=1e-9)
     duration.fill("2.5")
@@ -294,7 +259,7 @@ def test_velocities_in_samples_are_saved_chosen_linked_and_undone(page):
         rested_at(shown, 0, "velocities", velocities)
     shown.click(control("corollary 1"))
     rested_at(shown, 0, "velocities", "set")
-    shown.evaluate(RESET)
+    shown.evaluate("tests.reset()")
     rested_at(shown, 0, "velocities", "samples")
     assert shown.evaluate(SETTINGS, 0) == lab.settings
     rested_at(page(text, "#" + link), 0, "velocities", "samples")
@@ -339,7 +304,7 @@ def test_two_labs_of_a_page_each_read_their_own_part(page):
     assert shown.evaluate(SETTINGS, 0) == states[0]["settings"]
     assert shown.evaluate(SETTINGS, 1)["outputs"] == ["y1", "y2"]
     assert shown.evaluate("scrollY") > 100
-    shown.evaluate("() => [...window.perceptObsLabs][0].change({ seed: 3 }, true)")
+    shown.evaluate("() => tests.first().change({ seed: 3 }, true)")
     shown.wait_for_function(  # a lab that came into view late was not unfolded
         "() => location.hash.replace(/;look[^&]*/, '') === '#observer-2=1;seed=7&points=1;spin=0.5&observer=1;seed=3'"
     )

@@ -5,83 +5,17 @@ import re
 
 import pytest
 from lab_alone import DRAWN, opened, stated_policy
-from lab_browser import UNFOLD, assert_equals_python, control, rested, state
-from sample_sizes import sampled
+from lab_browser import assert_equals_python, control, rested, state
 
 from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-BESIDE = "() => Boolean([...window.perceptObsLabs][0].latest.beside)"
-TOUCH = "() => { const [lab] = window.perceptObsLabs; lab.change({ duration: lab.settings.duration - 1 }); }"
-COUNT = """() => {
-    const [lab] = window.perceptObsLabs;
-    window.runs = 0;
-    for (const engine of lab.results.engines) {
-        const own = engine.run.bind(engine);
-        engine.run = (...given) => { window.runs += 1; return own(...given); };
-    }
-}"""
-BLOCKED = """(changes) => new Promise((resolve) => {
-    const [lab] = window.perceptObsLabs;
-    const tasks = new PerformanceObserver((list) => {
-        for (const { duration } of list.getEntries()) window.longest = Math.max(window.longest, duration);
-    });
-    window.longest = 0;
-    tasks.observe({ type: "longtask" });
-    const began = performance.now();
-    let turns = 0;
-    lab.change(changes);
-    const look = () => {
-        turns += 1;
-        if (lab.shown.settings !== lab.settings) return setTimeout(look);
-        tasks.disconnect();
-        return resolve({ took: performance.now() - began, longest: window.longest, turns });
-    };
-    look();
-})"""
-MOVE = """async (count) => {
-    const [lab] = window.perceptObsLabs;
-    for (let k = 0; k < count; k++) {
-        lab.screen.steer([0.1 + 0.05 * Math.sin(k / 9), 0]);
-        await new Promise((resolve) => requestAnimationFrame(resolve));
-    }
-}"""
-PLACE = (
-    "(name) => [...window.perceptObsLabs][0].screen.handles.find((handle) => handle.node.dataset.control === name).at"
-)
-KEYS_FASTER_THAN_PICTURES = """(name) => {
-    const [lab] = window.perceptObsLabs;
-    const { node } = lab.screen.handles.find((handle) => handle.node.dataset.control === name);
-    for (const key of ["ArrowRight", "ArrowRight", "ArrowUp"]) {
-        node.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
-        lab.paint();  // a picture of the settings before: nothing comes from the worker meanwhile
-    }
-    node.dispatchEvent(new KeyboardEvent("keyup", { key: "ArrowUp", bubbles: true }));
-}"""
-PLAY = """(seconds) => new Promise((resolve) => {
-    const [lab] = window.perceptObsLabs;
-    let [frames, pictures] = [0, lab.pictures];
-    const play = document.querySelector('[data-control="play"]');
-    const count = () => { frames += 1; if (playing) requestAnimationFrame(count); };
-    let playing = true;
-    play.click();
-    const began = performance.now();
-    // At the end it begins again, for as long as it is to be played.
-    const again = setInterval(() => { if (!lab.screen.clock.playing) play.click(); }, 20);
-    requestAnimationFrame(count);
-    setTimeout(() => {
-        playing = false;
-        clearInterval(again);
-        if (lab.screen.clock.playing) play.click();
-        resolve({ frames, pictures: lab.pictures - pictures, seconds: (performance.now() - began) / 1000 });
-    }, 1000 * seconds);
-})"""
 HANDLES = [(observer_lab, "foe", 0.01), (structure_lab, "camera", 0.25), (points_lab, "mark 1", 0.01)]
 """A handle of each lab, and how far a key moves it."""
 
 FOUR = {"observers": ["identifier_based", "sliding_mode", "extended_kalman", "de_luca"], "duration": 20.0}
-MOVES, SECONDS = sampled(150, 1000), sampled(2, 600)
+MOVES, SECONDS = 1000, 600
 
 
 def answered(told):
@@ -92,8 +26,8 @@ def with_worker(show, lab, **options):
     """A page with a lab that computes in a worker."""
     page = show(lab, answers=answered, **options)
     rested(page)
-    page.evaluate(TOUCH)
-    page.wait_for_function(BESIDE)
+    page.evaluate("tests.touch()")
+    page.wait_for_function("() => tests.beside()")
     rested(page)
     return page
 
@@ -131,8 +65,8 @@ def memory_of(page):
 
 def test_under_the_stated_policy_a_worker_computes_what_python_computes(show):
     page = with_worker(show, observer_lab(observers=["identifier_based", "extended_kalman"], duration=10.0))
-    page.evaluate(COUNT)
-    page.evaluate(UNFOLD)
+    page.evaluate("tests.countRuns()")
+    page.evaluate("tests.unfold()")
     page.fill(control("duration number"), "8")
     page.check(control("observer de_luca"))
     page.check(control("chart error"))
@@ -153,8 +87,8 @@ def test_a_host_that_gives_no_bundle_has_a_worker_of_the_module_that_it_imported
         const get = widget.get;
         widget.get = (name) => (name === "_esm" ? undefined : get(name));  // as in marimo
     }""")
-    page.evaluate(TOUCH)
-    page.wait_for_function(BESIDE)
+    page.evaluate("tests.touch()")
+    page.wait_for_function("() => tests.beside()")
     rested(page)
     assert [worker.url for worker in page.workers] == ["http://lab.test/lab.js"]
     assert_equals_python(state(page))
@@ -163,14 +97,14 @@ def test_a_host_that_gives_no_bundle_has_a_worker_of_the_module_that_it_imported
 def test_where_a_policy_forbids_workers_the_page_computes(show):
     page = show(observer_lab(duration=10.0), f"{stated_policy()}; worker-src 'none'", answered)
     page.wait_for_function(DRAWN)
-    page.evaluate(COUNT)
-    page.evaluate(TOUCH)
+    page.evaluate("tests.countRuns()")
+    page.evaluate("tests.touch()")
     rested(page)
     page.wait_for_function("() => window.refused.length")
-    page.evaluate(UNFOLD)
+    page.evaluate("tests.unfold()")
     page.fill(control("duration number"), "8")
     rested(page)
-    assert not page.evaluate(BESIDE)
+    assert not page.evaluate("tests.beside()")
     assert page.evaluate("window.runs") > 0
     assert page.locator(".problem:not([hidden])").count() == 0
     assert_equals_python(state(page))
@@ -179,7 +113,7 @@ def test_where_a_policy_forbids_workers_the_page_computes(show):
 def test_while_a_heavy_picture_is_computed_the_page_goes_on(show):
     """A long task of the page would block pointer and keys as long."""
     page = with_worker(show, points_lab(weight="riccati", size=0.01, duration=30.0))
-    found = page.evaluate(BLOCKED, {"period": 0.005, "step": 0.002, "duration": 90.0})
+    found = page.evaluate("(changes) => tests.blocked(changes)", {"period": 0.005, "step": 0.002, "duration": 90.0})
     assert found["took"] > 300, found
     assert found["longest"] < found["took"] / 2, found
     assert found["turns"] > 20, found
@@ -188,23 +122,24 @@ def test_while_a_heavy_picture_is_computed_the_page_goes_on(show):
 @pytest.mark.parametrize(("make", "name", "step"), HANDLES)
 def test_keys_lose_no_step_where_pictures_are_late(show, make, name, step):
     page = with_worker(show, make())
-    before = page.evaluate(PLACE, name)
-    page.evaluate(KEYS_FASTER_THAN_PICTURES, name)
+    before = page.evaluate("(name) => tests.place(name)", name)
+    page.evaluate("(name) => tests.keysFasterThanPictures(name)", name)
     rested(page)
-    moved = [b - a for a, b in zip(before, page.evaluate(PLACE, name), strict=True)]
+    moved = [b - a for a, b in zip(before, page.evaluate("(name) => tests.place(name)", name), strict=True)]
     assert moved == pytest.approx([2 * step, step], rel=0.005)  # a speed has three digits
 
 
+@pytest.mark.night
 def test_play_runs_at_the_rate_of_the_screen_and_neither_moves_nor_play_fill_the_memory(show):
     """The estimates of four runs are 192 kB here; kept at every move they would fill several times the bound."""
     page = with_worker(show, observer_lab(**FOUR), reduced_motion="no-preference")
     used = memory_of(page)
-    page.evaluate(MOVE, 100)
-    page.evaluate(PLAY, 1)
+    page.evaluate("tests.steer(100)")
+    page.evaluate("tests.play(1)")
     rested(page)
     before = used()
-    page.evaluate(MOVE, MOVES)
-    found = page.evaluate(PLAY, SECONDS)
+    page.evaluate(f"tests.steer({MOVES})")
+    found = page.evaluate(f"tests.play({SECONDS})")
     rested(page)
     assert used() - before < 10, (before, used())
     assert found["pictures"] > 0.9 * found["frames"], found

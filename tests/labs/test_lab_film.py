@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from first_screens import COUNTS, READY, STILL, at_the_end, overlaps
+from first_screens import at_the_end, overlaps
 from lab_alone import DRAWN
 from lab_browser import control
 
@@ -102,30 +102,9 @@ def test_what_is_no_film_of_tracks_is_refused():
         observer_lab(replace(shown, frames=late))
 
 
-UNDER = """async () => {
-    const [lab] = window.perceptObsLabs;
-    const { film, image, clock } = lab.screen;
-    const { time } = film.films[0];
-    lab.paint();
-    const { seen } = lab.screen;
-    const off = (each) => Math.abs(each - seen.recorded.begin - clock.present());
-    const key = `0 ${time.reduce((best, each, k) => (off(each) < off(time[best]) ? k : best), 0)}`;
-    for (let tries = 0; film.last !== key && tries < 200; tries++) {
-        lab.redraw();
-        await new Promise((done) => setTimeout(done, 10));
-    }
-    const ratio = window.devicePixelRatio;
-    const [c1, c2, scale] = image.at;
-    const x = image.width / 2 + (seen.y[0] - c1) * scale;
-    const y = image.height / 2 - seen.up * (seen.y[1] - c2) * scale;
-    const at = (u, v) => Array.from(image.context.getImageData((x + u) * ratio, (y + v) * ratio, 1, 1).data);
-    const [inside, outside] = [at(0, 6), at(-0.1 * scale, 0.1 * scale)];
-    return { shown: film.last === key, above: y < image.height / 2, inside, outside, texts: image.texts };
-}"""
-"""Colours of the picture at the track's mark and beside it, once the frame of the time is there, and its texts."""
-POINTED = "(time) => { const [lab] = window.perceptObsLabs; lab.screen.clock.put(time); }"
-NOW = "() => { const [lab] = window.perceptObsLabs; return [lab.settings.scenario, lab.state.cursor]; }"
-ESTIMATE = "() => Array.from([...window.perceptObsLabs][0].shown.runs[0].estimate)"
+POINTED = "(time) => tests.first().screen.clock.put(time)"
+NOW = "() => [tests.settings().scenario, tests.first().state.cursor]"
+ESTIMATE = "() => Array.from(tests.first().shown.runs[0].estimate)"
 SIZES = [(1280, 800), (390, 800)]
 
 
@@ -142,7 +121,7 @@ def page_of(browser, tmp_path):
         page.on("console", lambda said: said.type == "error" and wrong.append(said.text))
         page.goto((tmp_path / "lab.html").as_uri())
         page.set_default_timeout(15_000)
-        page.wait_for_function(READY)
+        page.wait_for_function("() => tests.ready()")
         page.wait_for_function(DRAWN)
         at_the_end(page)
         pages.append(page)
@@ -179,15 +158,16 @@ def written(run, sample):
 def test_the_film_stands_under_the_track_while_one_scrubs_and_metres_at_the_point(theme, size, down, page_of):
     lab = observer_lab(film(down))
     page = page_of(lab, size, theme)
-    assert page.evaluate(COUNTS)["controls"] <= 12
-    assert page.evaluate(COUNTS)["words"] <= 60
+    counts = page.evaluate("tests.counts()")
+    assert counts["controls"] <= 12
+    assert counts["words"] <= 60
     assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
     run = lab.run()["extended_kalman"]
     np.testing.assert_allclose(np.reshape(page.evaluate(ESTIMATE), (-1, 3)), run.estimate, atol=1e-9)
     pad = page.locator(".time .scrub").bounding_box()
     for part in (0.2, 0.5, 0.8):
         page.mouse.click(pad["x"] + part * pad["width"], pad["y"] + 30)
-        found = page.evaluate(UNDER)
+        found = page.evaluate("tests.under()")
         assert found["shown"]
         assert found["above"] == down  # its y2 is negative: the picture is upright
         assert yellow(found["inside"]), (part, found["inside"])
@@ -195,7 +175,7 @@ def test_the_film_stands_under_the_track_while_one_scrubs_and_metres_at_the_poin
         assert not yellow(found["outside"])
     for sample in (0, 1, 2, 15, 60):
         page.evaluate(POINTED, float(run.recording.elapsed[sample]))
-        found = page.evaluate(UNDER)
+        found = page.evaluate("tests.under()")
         assert yellow(found["inside"])
         texts = [each["text"] for each in found["texts"]]
         actual = np.linalg.norm(pinhole().locate(run.recording.truth[sample]))
@@ -209,14 +189,14 @@ def test_the_film_stands_under_the_track_while_one_scrubs_and_metres_at_the_poin
 def test_another_track_is_chosen_by_its_dot_or_by_keys_at_the_same_frame(page_of):
     page = page_of(observer_lab(film()))
     page.evaluate(POINTED, 2.0)
-    page.evaluate(STILL)
-    x, y = page.evaluate("() => [...window.perceptObsLabs][0].screen.seen.tracks[0].at")
+    page.evaluate("tests.still()")
+    x, y = page.evaluate("() => tests.first().screen.seen.tracks[0].at")
     box = page.locator(".view.image").bounding_box()
     page.mouse.click(box["x"] + x, box["y"] + y)
     page.wait_for_function(DRAWN)
     assert page.evaluate(NOW) == ["point 0", pytest.approx(2.0 - LATER)]
-    page.evaluate(STILL)
-    found = page.evaluate(UNDER)
+    page.evaluate("tests.still()")
+    found = page.evaluate("tests.under()")
     assert found["shown"]
     assert any(re.fullmatch(r"triangulation 0\.\d\d m", each["text"]) for each in found["texts"])
     assert "triangulation" in page.inner_text(".says")

@@ -57,6 +57,13 @@ def test_what_would_keep_the_kernel_busy_is_said_and_not_begun(name, fast, monke
     assert sentence.startswith("Python says nothing on so fast or long a motion")
 
 
+@pytest.mark.parametrize(("name", "period"), [("observer", 1.0), ("points", 0.2)])
+def test_a_window_shorter_than_the_time_between_samples_is_as_long_as_that(name, period):
+    given = {"period": period, "duration": 5.0}
+    said, wide = (LABS[name](window=window, **given).analyse()["sentences"] for window in (0.15, period))
+    assert said == wide
+
+
 @pytest.mark.parametrize("name", ["observer", "structure"])  # those of many points are never so short
 def test_a_run_of_a_single_sample_is_told(name):
     assert LABS[name](duration=0.5, period=1.0).analyse() == {

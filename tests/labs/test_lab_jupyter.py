@@ -4,10 +4,9 @@ import shutil
 
 import numpy as np
 import pytest
-from jupyter_harness import LOG, jupyterlab, lab_page, log_entries, open_notebook, run_all, wait_until
+from jupyter_harness import jupyterlab, lab_page, log_entries, open_notebook, run_all, wait_until
 from lab_browser import (
     OPEN,
-    UNFOLD,
     assert_equals_python,
     assert_python_has,
     assert_structure_is_python,
@@ -93,7 +92,7 @@ def test_python_may_be_busy_set_the_settings_and_say_what_is_wrong(browser_page,
     page.click(RUN_ALL)
     page.wait_for_function(f"window.perceptObsLabs?.size && {FIRST}.shown")
     page.wait_for_selector(".percept-lab details", state="attached")
-    page.evaluate(UNFOLD)
+    page.evaluate("tests.unfold()")
     for seed in range(1, 4):  # while the kernel sleeps
         page.fill(control("seed number"), str(seed))
         page.wait_for_function(f"{FIRST}.shown.settings.seed === {seed}")
@@ -126,7 +125,7 @@ def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_pa
     page.wait_for_function("window.perceptObsLabs.size === 4")
     rested(page)
     assert page.evaluate(settings) == before
-    page.evaluate(UNFOLD)
+    page.evaluate("tests.unfold()")
     end_kernel(page, server, "kinds.ipynb")
     page.click(control("corollary 6"))
     page.wait_for_selector(".silence:not([hidden])")
@@ -240,4 +239,4 @@ def test_an_error_in_a_callback_reaches_the_log_console(browser_page, folder):
     handle = page.locator(".noUi-handle")
     handle.focus()
     handle.press("ArrowRight")
-    page.wait_for_function(LOG)
+    page.wait_for_function("() => tests.log()")

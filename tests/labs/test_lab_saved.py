@@ -5,7 +5,7 @@ import re
 import pytest
 from ipywidgets.embed import dependency_state, embed_data
 from lab_alone import DRAWN
-from lab_browser import UNFOLD, assert_equals_python, control, state
+from lab_browser import assert_equals_python, control, state
 from lab_settings import ALL, KEYS
 
 from percept_obs.labs import observer_lab, points_lab, structure_lab
@@ -13,29 +13,6 @@ from percept_obs.labs import observer_lab, points_lab, structure_lab
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 LABS = [observer_lab, points_lab, lambda: structure_lab(duration=3.0, period=0.01, step=0.01)]
-
-SHOW = """async ({ state, buffers }) => {
-    for (const { path, data } of buffers) {
-        state[path[0]] = new DataView(Uint8Array.from(atob(data), (c) => c.charCodeAt(0)).buffer);
-    }
-    const model = {
-        get: (name) => state[name],
-        set: (name, value) => (state[name] = value),
-        save_changes: () => { throw new Error("there is no Python"); },
-        on: () => {},
-        off: () => {},
-    };
-    const text = new Blob([state._esm], { type: "text/javascript" });
-    const bundle = await import(URL.createObjectURL(text));
-    await bundle.default.render({ model, el: document.body });
-}"""
-
-CHECK_ALL = """() => [...document.querySelectorAll("[data-control^='observer ']")].forEach(
-    (box) => box.disabled || box.checked || box.click())"""
-FOUND = """() => { const [lab] = window.perceptObsLabs; return {
-    runs: lab.shown.runs.filter((run) => run.estimate.some((v) => Number.isFinite(v))).map((run) => run.name),
-    refused: Object.keys(lab.kernels.refused(lab.settings)),
-}; }"""
 
 
 @pytest.fixture
@@ -45,9 +22,9 @@ def page(browser):
     kept = dependency_state([lab], drop_defaults=False)
     saved = embed_data(views=[lab], state=kept)["manager_state"]["state"]
     page = browser.new_page(offline=True, reduced_motion="reduce")
-    page.evaluate(SHOW, saved[lab.model_id])
+    page.evaluate("(saved) => tests.showSaved(saved)", saved[lab.model_id])
     page.wait_for_function(DRAWN)
-    page.evaluate(UNFOLD)
+    page.evaluate("tests.unfold()")
     yield page
     page.close()
 
@@ -59,11 +36,10 @@ def test_every_observer_with_every_output_on_every_surface(page):
         page.wait_for_function(DRAWN)
         if page.is_visible(control("outputs")):  # with one choice there is nothing to choose
             page.fill(control("outputs"), {"y1": "0", "y1+y2": "1", "y2": "2"}[outputs])
-        assert "+".join(page.evaluate("[...window.perceptObsLabs][0].settings.outputs")) == outputs
-        page.evaluate(CHECK_ALL)
+        assert "+".join(page.evaluate("tests.first().settings.outputs")) == outputs
+        page.evaluate("tests.tickAll()")
         page.wait_for_function(DRAWN)
-        found = page.evaluate(FOUND)
-        assert {*found["runs"], *found["refused"]} == set(ALL), key
+        assert {*page.evaluate("tests.observers()")} == set(ALL), key
         assert page.locator(".problem:not([hidden])").count() == 0
     assert "There is no Python here" in page.inner_text(".silence")
 
@@ -93,14 +69,6 @@ def from_disk(browser, tmp_path):
     return opened
 
 
-ON_PAPER = """() => {
-    const root = document.querySelector(".percept-lab");
-    const seen = (which) => [...root.querySelectorAll(which)].filter((node) => node.checkVisibility()).length;
-    const pressed = "button, input, select, summary";
-    return { pressed: seen(pressed), pictures: seen("canvas"), said: seen(".says") };
-}"""
-
-
 @pytest.mark.parametrize("make", LABS)
 def test_a_page_of_its_own_is_small_asks_for_nothing_and_is_printed_without_controls(make, from_disk, tmp_path):
     page, asked = from_disk(make())
@@ -108,7 +76,7 @@ def test_a_page_of_its_own_is_small_asks_for_nothing_and_is_printed_without_cont
     assert (tmp_path / "lab.html").stat().st_size < 430_000
     assert page.locator(".silence").is_hidden()
     page.emulate_media(media="print")
-    found = page.evaluate(ON_PAPER)
+    found = page.evaluate("tests.onPaper()")
     assert found["pressed"] == 0
     assert found["pictures"] > 2
     assert found["said"] >= 1
@@ -118,8 +86,8 @@ def test_a_page_of_its_own_is_small_asks_for_nothing_and_is_printed_without_cont
 
 def test_it_computes_beside_the_page_though_the_page_is_a_file(from_disk):
     page, asked = from_disk(points_lab())
-    page.evaluate("() => [...window.perceptObsLabs][0].change({ spin: 0.5 }, true)")
-    page.wait_for_function("() => [...window.perceptObsLabs][0].latest.beside")
+    page.evaluate("() => tests.first().change({ spin: 0.5 }, true)")
+    page.wait_for_function("() => tests.first().latest.beside")
     page.wait_for_function(DRAWN)
     assert asked == []
     page.close()

@@ -1,9 +1,7 @@
 """Every lab fits windows of all widths, and what can be pressed can be reached; what does not fit is found."""
 
 import pytest
-from front_ends import ALL_DRAWN
-from lab_browser import UNFOLD
-from widths import LAW, WIDTHS, assert_fits
+from widths import WIDTHS, assert_fits
 
 from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
 
@@ -23,9 +21,9 @@ def test_a_saved_lab_fits_its_window(browser, tmp_path, name):
     page = browser.new_page(offline=True)
     LABS[name]().save(tmp_path / "lab.html")
     page.goto((tmp_path / "lab.html").as_uri())
-    page.wait_for_function(ALL_DRAWN)
+    page.wait_for_function("() => tests.allDrawn()")
     looked = assert_fits(page, name)
-    page.evaluate(UNFOLD)
+    page.evaluate("tests.unfold()")
     looked += assert_fits(page, f"{name}, with its drawer")
     print(f"{name}: {len(WIDTHS)} widths, {looked} controls reached")
     page.close()
@@ -51,6 +49,6 @@ def test_a_saved_lab_fits_its_window(browser, tmp_path, name):
 def test_what_does_not_fit_is_found(browser, body, said):
     page = browser.new_page(viewport={"width": 800, "height": 600})
     page.set_content(f"<!doctype html><body>{body}")
-    wrong = page.evaluate(LAW)["wrong"]
+    wrong = page.evaluate("tests.fits()")["wrong"]
     assert wrong == [] if said is None else any(said in each for each in wrong), wrong
     page.close()

@@ -13,7 +13,7 @@ from urllib.parse import unquote, urldefrag
 import matplotlib.figure
 import nbformat
 import pytest
-from front_ends import ALL_DRAWN, SETTLED, TRIALS, Shown
+from front_ends import TRIALS, Shown
 from lab_alone import DRAWN
 from lab_settings import FRONT
 from needs import missing
@@ -173,7 +173,7 @@ def test_a_page_fits_its_window_and_all_that_can_be_pressed_is_reached(pages, br
     page, looked = browser.new_page(offline=True), 0
     for path in looked_at(pages):
         page.goto(path.as_uri())
-        page.wait_for_function(ALL_DRAWN)
+        page.wait_for_function("() => tests.allDrawn()")
         looked += assert_fits(page, path)
     print(f"{len(looked_at(pages))} of {len(written(pages))} pages, {len(WIDTHS)} widths: {looked} controls reached")
     page.close()
@@ -293,7 +293,7 @@ def shown(pages, browser):
     """Two labs in a page of the site, without a network."""
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
     page.goto((pages / "notebooks" / NOTEBOOK).with_suffix(".html").as_uri())
-    page.wait_for_function(SETTLED, arg=2)
+    page.wait_for_function("(count) => tests.settled(count)", arg=2)
     yield Shown(page, 2)
     page.close()
 

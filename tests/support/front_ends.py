@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from jupyter_harness import free_port, is_up, kernel_is_ready, open_notebook, run_all, wait_until
-from lab_browser import RESET, UNFOLD, assert_equals_python, control, drag_by_keys, drag_by_mouse, state, write_notebook
+from lab_browser import assert_equals_python, control, drag_by_keys, drag_by_mouse, state, write_notebook
 from places import NOTEBOOKS
 
 from percept_obs.labs import observer_lab
@@ -16,21 +16,6 @@ from percept_obs.labs import observer_lab
 OPENED = "observer_lab('ma2005_eq35')", 'observer_lab(outputs=["y1"])'
 LABS = f"from percept_obs.labs import observer_lab\n{OPENED[0]}", OPENED[1]
 FOE = control("foe")
-
-SETTLED = """(count) => {
-    const labs = [...(window.perceptObsLabs ?? [])];
-    return labs.length === count && labs.every((lab) => lab.settled && !lab.pending
-        && (!lab.widget.save_changes || lab.link.waitingFor === null));
-}"""
-ALL_DRAWN = """() => {
-    const labs = [...(window.perceptObsLabs ?? [])];
-    return document.querySelectorAll("[data-percept-obs]").length === labs.length
-        && labs.every((lab) => lab.shown && lab.settled !== false && !lab.pending);
-}"""
-ORDER = """() => {
-    const tops = [...window.perceptObsLabs].map((lab) => lab.view.root.getBoundingClientRect().top);
-    return tops.map((_, k) => k).sort((a, b) => tops[a] - tops[b]);
-}"""
 
 
 @dataclass(frozen=True)
@@ -43,15 +28,15 @@ class Shown:
 
     def settle(self, patience=60):
         """Wait until every lab shows its latest settings and Python, where there is one, has answered."""
-        self.page.wait_for_function(SETTLED, arg=self.labs, timeout=1000 * patience)
+        self.page.wait_for_function("(count) => tests.settled(count)", arg=self.labs, timeout=1000 * patience)
 
     def opening(self):
         """State of the first lab when it is put back, all its topics open."""
         self.settle()
-        self.page.evaluate(UNFOLD)
-        self.page.evaluate(RESET)
+        self.page.evaluate("tests.unfold()")
+        self.page.evaluate("tests.reset()")
         self.settle()
-        self.page.evaluate("() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
+        self.page.evaluate("tests.painted()")
         return self.first()
 
     def first(self):
@@ -61,7 +46,7 @@ class Shown:
 
     def state(self, place):
         """State of the lab at a place, counted from above: which opens first is the front end's affair."""
-        return state(self.page, self.page.evaluate(ORDER)[place])
+        return state(self.page, self.page.evaluate("tests.order()")[place])
 
 
 # What is tried, by the names of the table.

@@ -311,9 +311,9 @@ def jupyterlab(folder: Path, home: Path) -> Iterator[Server]:
 @contextmanager
 def lab_page(chromium: str, server: Server, home: Path, width: int = 1280, height: int = 900):
     """A page of a headless browser that is signed in to a server; playwright's, with the server as its base."""
-    from playwright.sync_api import sync_playwright
+    import browsers  # only here, for notebooks' kernels import this module, too
 
-    with sync_playwright() as playwright:
+    with browsers.playwright() as playwright:
         browser = playwright.chromium.launch_persistent_context(
             home,
             executable_path=chromium,
@@ -322,6 +322,7 @@ def lab_page(chromium: str, server: Server, home: Path, width: int = 1280, heigh
             base_url=server.url,
             viewport={"width": width, "height": height},
         )
+        browser.add_init_script(browsers.SCRIPTS)
         try:
             page = browser.pages[0]
             page.request.get(f"/lab?token={server.token}")  # leaves the cookie that signs in
@@ -333,7 +334,7 @@ def lab_page(chromium: str, server: Server, home: Path, width: int = 1280, heigh
 def open_notebook(page, name: str) -> None:
     """Show a notebook of the server's folder and wait for its kernel; in a page with JupyterLab it replaces others."""
     if page.evaluate("Boolean(window.jupyterapp)"):
-        page.evaluate(OPEN_ALONE, name)
+        page.evaluate("(path) => tests.openAlone(path)", name)
     else:
         page.goto(f"/lab/tree/{name}?reset")
     page.wait_for_selector(IDLE, timeout=60_000)
@@ -357,7 +358,7 @@ def run_all(page, patience: float = 60) -> None:
     """
     page.click(".lm-MenuBar-item:has-text('Run')")
     page.click(".lm-Menu-item[data-command='runmenu:run-all']")
-    wait_until(lambda: complaints(page) or page.evaluate(ALL_RAN), "all cells to run", patience)
+    wait_until(lambda: complaints(page) or page.evaluate("tests.allRan()"), "all cells to run", patience)
     assert not complaints(page), "\n".join(complaints(page))
     page.wait_for_selector(IDLE, timeout=1000 * patience)
 
@@ -369,24 +370,10 @@ def complaints(page) -> list[str]:
 
 def log_entries(page) -> str:
     """Text of JupyterLab's log console, where errors in callbacks go; empty without entries."""
-    return page.evaluate(LOG) or ""
+    return page.evaluate("tests.log()") or ""
 
 
-OPEN_ALONE = """async (path) => {
-    const { commands } = window.jupyterapp;
-    await commands.execute("docmanager:save-all");
-    await commands.execute("application:close-all");
-    await commands.execute("docmanager:open", { path, factory: "Notebook" });
-}"""
 IDLE = ".jp-Notebook-ExecutionIndicator[data-status=idle]"
-ALL_RAN = """() => {
-    const prompts = [...document.querySelectorAll('.jp-CodeCell .jp-InputPrompt')];
-    return prompts.length > 0 && prompts.every(prompt => /\\[\\d+\\]/.test(prompt.textContent));
-}"""
-LOG = """() => {
-    const item = document.querySelector('.jp-LogConsoleStatusItem');
-    return item && /[1-9]/.test(item.textContent) ? item.title || item.textContent : '';
-}"""
 
 
 def free_port() -> int:

@@ -4,40 +4,15 @@ import base64
 import json
 import re
 from contextlib import contextmanager
+from pathlib import Path
 
-from lab_browser import UNFOLD, rested
+from lab_browser import rested
 from lab_settings import FRONT
 from places import NOTEBOOKS
 
 PAGE = '<!doctype html><meta charset="utf-8"><title>A lab</title><body><script type="module" src="/start.js"></script>'
-START = """
-import bundle from "/lab.js";
-window.refused = [];
-document.addEventListener("securitypolicyviolation", (event) => window.refused.push(event.violatedDirective));
-const binary = (text) => new DataView(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
-const frames = STATE.frames.map((film) => ({ ...film, images: film.images.map(binary) }));
-const state = { ...STATE, texts: binary(STATE.texts), frames };
-const listeners = {};
-const TOLD = ["view", "settings", "summary"];
-window.held = null;  // a list, while answers are to be held back
-window.heard = (found) => {
-    Object.assign(state, found);
-    for (const name of Object.keys(found)) for (const hear of listeners[`change:${name}`] ?? []) hear();
-};
-const model = {
-    get: (name) => state[name],
-    set: (name, value) => (state[name] = value),
-    save_changes: () => window.toPython?.(Object.fromEntries(TOLD.map((name) => [name, state[name] ?? {}])))
-        .then((found) => (window.held ? window.held.push(found) : window.heard(found))),
-    on: (event, listener) => (listeners[event] ??= []).push(listener),
-    off: (event, listener) => (listeners[event] = listeners[event].filter((each) => each !== listener)),
-};
-bundle.render({ model, el: document.body });
-"""
-DRAWN = """() => {
-    const [lab] = window.perceptObsLabs ?? [];
-    return lab?.shown && lab.shown.settings === lab.settings && !lab.pending && lab.settled !== false;
-}"""
+START = Path(__file__).with_name("alone.js").read_text("utf-8")
+DRAWN = "() => tests.drawn()"
 """Pictures and words are of the present settings."""
 
 
@@ -63,7 +38,7 @@ def opened(browser, lab, policy=None, answers=None, **options):
     told["_esm"] = bundle
     files = {
         "/": ("text/html", PAGE),
-        "/start.js": ("text/javascript", f"const STATE = {json.dumps(told)};\n{START}"),
+        "/start.js": ("text/javascript", START.replace("STATE_OF_THE_LAB", json.dumps(told))),
         "/lab.js": ("text/javascript", bundle),
     }
     page = browser.new_page(**{"reduced_motion": "reduce", **options})
@@ -97,7 +72,7 @@ def answered(browser, lab, **options):
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.set_default_timeout(15_000)
     rested(page)
-    page.evaluate(UNFOLD)
+    page.evaluate("tests.unfold()")
     yield page
     assert wrong == []
     assert page.evaluate("window.refused") == []

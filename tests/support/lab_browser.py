@@ -2,7 +2,6 @@
 
 import json
 import time
-from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
@@ -31,89 +30,13 @@ def keep(change):
 lab.observe(keep, "analysis")
 lab
 """
-
-WIDTH = "(width) => { document.querySelector('.percept-lab').parentElement.style.width = width; }"
-
-COLOURS = "() => [...window.perceptObsLabs][0].theme?.lines.join()"
-
-PAINTED = """async () => {
-    for (let k = 0; k < 3; k++) await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
-}"""
-
-OUTSIDE = """() => {
-    const lab = document.querySelector('.percept-lab');
-    return [...lab.querySelectorAll('canvas, .actions, .control')].filter(
-        (e) => e.getBoundingClientRect().right > lab.getBoundingClientRect().right + 1).map((e) => e.className);
-}"""
-"""Elements that are wider than their lab."""
-
-RESTED = """() => [...(window.perceptObsLabs ?? [])].length > 0 && [...window.perceptObsLabs].every(
-    (lab) => lab.shown && lab.shown.settings === lab.settings && !lab.pending && lab.resting === null
-        && lab.link.waitingFor === null && lab.link.sent?.settings === lab.settings
-        && lab.settled !== false)"""
-
-STATE = """(which) => {
-    const lab = [...window.perceptObsLabs][which];
-    const { settings, shown, screen, state, view: { root } } = lab;
-    const numbers = (values) => Array.from(values, (v) => (Number.isFinite(v) ? v : null));
-    const runs = shown.runs ?? [{ ...shown, name: "points" }];  // many points are one run
-    const by = (pick) => Object.fromEntries(runs.map((run) => [run.name, pick(run)]));
-    const charts = { first: screen.chart, ...Object.fromEntries(state.view.charts.map((n) => [n, screen.charts[n]])) };
-    const drawn = Object.entries(charts).filter(([, { chart }]) => chart && !shown.problem);
-    const of = (pick) => Object.fromEntries(drawn.map(([name, { chart }]) => [name, pick(chart)]));
-    const told = shown.problem ? { verdicts: [], reasons: [] } : lab.told();
-    const verdicts = told.verdicts.map(({ title, text }) => `${title}: ${text}`);
-    const said = (selector) => [...root.querySelectorAll(selector)].map((node) => node.textContent);
-    return {
-        settings,
-        runs: by((run) => numbers(run.estimate)),
-        divergedAt: by((run) => run.divergedAt),
-        drawn: of(({ lines }) => lines.map(({ id, values }) => ({ name: id, values: numbers(values) }))),
-        bars: of(({ bars }) => bars?.rows.flat().length ?? 0),
-        verdicts,
-        words: [...verdicts, ...told.reasons, ...(lab.answered()?.sentences ?? [])].join(" "),
-        labels: screen.views.filter(({ figure }) => !figure.hidden).map(({ canvas }) => canvas.ariaLabel),
-        problems: said(".problem:not([hidden])"),
-        notice: root.querySelector(".notice").textContent,
-        silent: !root.querySelector(".silence").hidden,
-    };
-}"""
-
-FUZZ = Path(__file__).with_name("lab_fuzz.js").read_text("utf-8")
 EVENTS = sampled(100, 10_000)
 """Random events in each lab, about one for each control."""
-MOVED = sampled(4, 1)
-"""One in so many controls that the Tab key reaches is moved by its keys."""
-
-UNFOLD = """() => {
-    for (const lab of window.perceptObsLabs) {
-        const { drawer } = lab;
-        for (const fold of lab.view.root.querySelectorAll("details")) fold.open = true;
-        if (!drawer || drawer.unfolded) continue;
-        const show = drawer.show.bind(drawer);
-        drawer.unfolded = true;
-        drawer.show = () => {
-            show();
-            drawer.body.hidden = false;
-            drawer.panel.show();
-            for (const fold of drawer.folds) fold.open = true;
-            if (lab.shown?.whole && !lab.shown.problem) for (const group of drawer.groups) group.show?.();
-        };
-        lab.state.amend({ view: { ...lab.state.view, more: "words" } });
-        lab.looked();
-    }
-}"""
-"""Open the drawers with all their groups at once, so that every control can be tried."""
-RESET = "() => [...window.perceptObsLabs][0].screen.again()"
-"""Put the first lab back to its opening, as its button does."""
-
-USABLE = """() => [...[...window.perceptObsLabs][0].view.root.querySelectorAll("[data-control]")]
-    .filter((control) => !control.disabled && control.checkVisibility()).map((control) => control.dataset.control)"""
 
 
 def usable(page):
     """Names of the controls of the first lab that can be used now."""
-    return set(page.evaluate(USABLE))
+    return set(page.evaluate("tests.controls()"))
 
 
 def used_at_random(page, seed, wanted=frozenset(), count=EVENTS, most=20_000):
@@ -124,9 +47,11 @@ def used_at_random(page, seed, wanted=frozenset(), count=EVENTS, most=20_000):
         if more and not left:
             break
         if more:
-            page.evaluate(RESET)  # what could be used at the start can be used again
+            page.evaluate("tests.reset()")  # what could be used at the start can be used again
             rested(page, 60)
-        found = page.evaluate(FUZZ, [seed + 1000 * more, 100 if more else count, most, left])
+        found = page.evaluate(
+            "(given) => tests.events(...given)", [seed + 1000 * more, 100 if more else count, most, left]
+        )
         assert found["wrong"] == [], found["wrong"]
         used |= set(found["used"])
     rested(page, 60)
@@ -154,39 +79,39 @@ def open_unfolded(page, name):
     open_notebook(page, name)
     run_all(page)
     rested(page)
-    page.evaluate(UNFOLD)
+    page.evaluate("tests.unfold()")
 
 
 def rested(page, patience=30):
     """Wait until every lab shows its latest settings and Python has answered."""
-    page.wait_for_function(RESTED, timeout=1000 * patience)
+    page.wait_for_function("() => tests.rested()", timeout=1000 * patience)
 
 
 def painted(page):
     """Wait until what has changed is laid out and handed to the screen, and what that changes as well."""
-    page.evaluate(PAINTED)
+    page.evaluate("tests.painted()")
 
 
 def state(page, which=0):
     """Settings, estimates, lines and words of a lab of the page."""
-    return page.evaluate(STATE, which)
+    return page.evaluate("(which) => tests.state(which)", which)
 
 
 def assert_fits(page, width):
     """In a cell of so many pixels nothing of the lab is cut."""
-    page.evaluate(WIDTH, f"{width}px")
+    page.evaluate("(width) => tests.width(width)", f"{width}px")
     painted(page)
-    assert page.evaluate(OUTSIDE) == []
-    page.evaluate(WIDTH, "")
+    assert page.evaluate("tests.outside()") == []
+    page.evaluate("tests.width('')")
 
 
 def assert_own_colours(page):
     """In the dark the lab draws in other colours."""
-    light = page.evaluate(COLOURS)
+    light = page.evaluate("tests.colours()")
     page.evaluate("document.body.dataset.jpThemeLight = 'false'")
-    page.wait_for_function(f"(light) => {{ const now = ({COLOURS})(); return now && now !== light; }}", arg=light)
+    page.wait_for_function("(light) => tests.colours() && tests.colours() !== light", arg=light)
     page.evaluate("document.body.dataset.jpThemeLight = 'true'")
-    page.wait_for_function(f"(light) => ({COLOURS})() === light", arg=light)
+    page.wait_for_function("(light) => tests.colours() === light", arg=light)
 
 
 def assert_has(lab, settings):
@@ -319,45 +244,24 @@ MOVES = {
 }
 """Keys that move a kind of control there and back."""
 
-LISTEN = """() => {
-    window.moved = false;
-    window.value = (node) => `${node.value} ${node.checked}`;
-    document.addEventListener("keyup", ({ target }) => {
-        window.moved ||= target !== window.focused || target.opening !== value(target);
-    }, true);
-}"""
-FOCUSED = """async () => {
-    await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
-    const node = document.activeElement;
-    node.opening ??= value(node);
-    const [there, back] = [Boolean(node.closest(".percept-lab")), node.opening === value(node)];
-    const found = { name: node.dataset.control ?? "", kind: node.type, there, back, moved };
-    Object.assign(window, { focused: node, moved: false });
-    return found;
-}"""
-
 
 def moved_by_keyboard(page, moves=MappingProxyType(MOVES)):
-    """Names of the controls on which the Tab key comes by, all that can be used, one in `MOVED` moved by keys."""
-    page.evaluate(UNFOLD)
-    wanted = set(
-        page.evaluate("""() => [...document.querySelectorAll('.percept-lab [data-control]')]
-            .filter((c) => c.checkVisibility() && !c.disabled && (c.type !== "radio" || c.checked))
-            .map((c) => c.dataset.control)""")
-    )
+    """Names of the controls on which the Tab key comes by, all that can be used and that keys move there and back."""
+    page.evaluate("tests.unfold()")
+    wanted = set(page.evaluate("tests.stops()"))
     reached = []
-    page.evaluate(LISTEN)
+    page.evaluate("tests.listen()")
     page.locator(".percept-lab [data-control]:visible").first.focus()
     for _ in range(2 * len(wanted)):
-        now = page.evaluate(FOCUSED)
+        now = page.evaluate("tests.focused()")
         if reached and not now["there"]:
             break
         reached.append(now["name"])
         there, back = moves.get(now["kind"], ("", ""))
-        if there and len(reached) % MOVED == 0:
+        if there:
             page.keyboard.press(there)
             page.keyboard.press(back)
-            moved = page.evaluate(FOCUSED)
+            moved = page.evaluate("tests.focused()")
             assert moved["moved"], now["name"]
             if not moved["back"]:  # it stood at its end
                 page.keyboard.press(there)
@@ -366,26 +270,18 @@ def moved_by_keyboard(page, moves=MappingProxyType(MOVES)):
     return reached
 
 
-VIOLATIONS = """async () => {
-    // Of rules that hold only one place is told: thousands of places would take longer than the search.
-    const { passes, violations } = await axe.run(".percept-lab", { resultTypes: ["violations"] });
-    const serious = violations.filter(({ impact }) => ["serious", "critical"].includes(impact));
-    return [passes.length, serious.map(({ id, nodes }) => [id, nodes.map(({ html }) => html)])];
-}"""
-
-
 def serious_violations(page, widths=("", "400px")):
     """Serious and critical findings of axe-core inside the lab, everything open, at some widths."""
     axe = FRONT / "node_modules/axe-core/axe.min.js"
     if not axe.exists():
         missing("node", f"axe-core is missing: run npm ci in {FRONT}.")
-    page.evaluate(UNFOLD)
+    page.evaluate("tests.unfold()")
     page.evaluate(axe.read_text("utf-8"))
     serious = []
     for width in widths:
-        page.evaluate(WIDTH, width)
-        rules, found = page.evaluate(VIOLATIONS)
+        page.evaluate("(width) => tests.width(width)", width)
+        rules, found = page.evaluate("tests.violations()")
         assert rules > 10
         serious += found
-    page.evaluate(WIDTH, "")
+    page.evaluate("tests.width('')")
     return serious

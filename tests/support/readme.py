@@ -199,19 +199,18 @@ def picture(figure):
 
 def pictures_of_labs(chromium):
     """All labs of the gallery; the first one also moves."""
-    from playwright.sync_api import sync_playwright
+    import browsers
 
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        images = {name: picture_of_lab(browser, make) for name, (make, _) in LABS.items()}
-        save_moving(MOVING, moving_picture(browser))
-        browser.close()
+    browser = browsers.shared(chromium)
+    images = {name: picture_of_lab(browser, make) for name, (make, _) in LABS.items()}
+    save_moving(MOVING, moving_picture(browser))
+    browsers.close()
     return images
 
 
 def moving_picture(browser, count=FRAMES):
     """Images of the lab of one point while it plays, at equal steps of its time."""
-    from first_screens import STILL, first_screen
+    from first_screens import first_screen
     from lab_alone import DRAWN
 
     images = []
@@ -219,7 +218,7 @@ def moving_picture(browser, count=FRAMES):
         for k in range(count):
             page.evaluate(SHOW, k / (count - 1))
             page.wait_for_function(DRAWN)
-            page.evaluate(STILL)
+            page.evaluate("tests.still()")
             images.append(Image.open(io.BytesIO(page.screenshot())).convert("RGB"))
     return images
 

@@ -1,6 +1,6 @@
 // What holds of a page at the width of its window: nothing is wider, and whatever can be pressed can be reached.
 // A function that returns { looked, wrong }: how many controls it looked at, and a sentence for each that fails.
-async () => {
+window.tests.fits = async () => {
   const PRESSED = 'a[href], button, input, select, summary, textarea, label[for], [role="button"], [tabindex="0"]';
   const RAND = 1; // px that a browser rounds
   const root = document.documentElement;
@@ -127,4 +127,4 @@ async () => {
   still.remove();
   window.scrollTo({ top: 0, behavior: "instant" });
   return { looked, wrong };
-}
+};

@@ -1,9 +1,6 @@
 """Widths of windows, from a telephone to a large screen, and the law that a page keeps at each."""
 
-from pathlib import Path
-
 WIDTHS = (360, 390, 768, 1024, 1280, 1440, 1920)
-LAW = Path(__file__).with_name("widths.js").read_text("utf-8")
 
 
 def assert_fits(page, name):
@@ -11,7 +8,7 @@ def assert_fits(page, name):
     looked = 0
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 800})
-        found = page.evaluate(LAW)
+        found = page.evaluate("tests.fits()")
         assert found["wrong"] == [], f"{name}, {width} px wide: {found['wrong']}"
         looked += found["looked"]
     return looked

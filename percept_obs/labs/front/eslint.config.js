@@ -5,6 +5,13 @@ const MODEL = ["src/state/**/*.js", "src/engine/**/*.js"];
 const OTHERS = "^(?!\\./[^/]+$|\\.\\./(state|engine)/)";
 const message = "what computes knows nothing of the page: import from state/ and engine/ only";
 
+/** For what the tests put into pages. */
+export const IN_TESTS = [
+  js.configs.recommended,
+  { languageOptions: { globals: { ...globals.browser, STATE_OF_THE_LAB: false } }, rules: { eqeqeq: "error", "prefer-const": "error" } },
+  { files: ["**/*.mjs"], languageOptions: { globals: globals.node } },
+];
+
 export default [
   js.configs.recommended,
   {

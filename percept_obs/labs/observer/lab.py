@@ -26,6 +26,7 @@ from percept_obs.labs.observer.tracks import (
     typed_text,
     with_affine_motions,
 )
+from percept_obs.labs.shared.common_settings import window_in
 from percept_obs.labs.shared.lab import NOISES, OF_ONE_POINT, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.samples import table_for_the_page
@@ -232,7 +233,7 @@ class ObserverLab(Lab):
         }
         steps = np.ptp(recording.time) / min(np.diff(recording.time).min(), LONGEST_STEP)
         followed, beyond = within_reach(steps, states, work)
-        window = min(settings["window"], float(np.ptp(recording.time)))
+        window = window_in(recording, settings["window"])
         sentences = excitation_in_words(self._registry.form(*seen), recording, window)
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", StepTooLong)

@@ -7,7 +7,7 @@ import numpy as np
 
 from percept_obs.labs.observer.registry import Registry
 from percept_obs.labs.observer.texts import BY_NAME, OWN_SWITCH, SIZE, WAYS
-from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, gains, noise, offering, own_gains
+from percept_obs.labs.shared.common_settings import AT_LEAST, DROPOUT, KEPT, SEED, gains, noise, offering, own_gains
 from percept_obs.labs.shared.observer_texts import with_all_gains
 from percept_obs.labs.shared.schema import Choice, Group, Names, Number, Optional, Row, Schema, Settings, vector
 from percept_obs.labs.shared.surfaces import SURFACES, numbers_of
@@ -52,7 +52,7 @@ def as_settings(scenario: Scenario, surface: str = "") -> Settings:
 
 _TILT: Settings = {"usual": (-1, 1), "step": 0.05}
 _NOT_ALONG = "the plane must not hold the optical axis"
-_WINDOW = "over which w w^T is gathered"
+_WINDOW = f"over which w w^T is gathered, {AT_LEAST}"
 _THRESHOLD = "|w| below which an instant tells too little"
 
 SCHEMA = Schema(

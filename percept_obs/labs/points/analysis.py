@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from percept_obs.labs.shared.common_settings import window_in
 from percept_obs.points import PointsRun
 from percept_obs.points.form import points_form
 from percept_obs.points.gramian import decay_bound, gramian, linear_gramian
@@ -19,10 +20,10 @@ STILL = 1e-6
 def in_words(run: PointsRun, window: float) -> dict[str, Any]:
     """Sentences, and the rate in 1/s at which the error decays at least, or None where nothing is guaranteed.
 
-    The Gramian's windows last `window` seconds, at least from sample to sample; a shorter run is one window.
+    The Gramian's windows last `window` seconds, as window_in() has it.
     """
     recording = run.recording
-    window = max(min(window, float(run.time[-1])), float(recording.intervals.max()))
+    window = window_in(recording, window)
     seen, sentences, bound = gramian(recording, window).holds, [], None
     if not seen and (pair := linear_gramian(recording, window)).holds:
         sentences.append(

@@ -2,7 +2,7 @@
 
 from percept_obs.labs.points.texts import MOST_POINTS, STATES
 from percept_obs.labs.points.typed_weight import MOST_OF_P
-from percept_obs.labs.shared.common_settings import DROPOUT, KEPT, SEED, noise
+from percept_obs.labs.shared.common_settings import AT_LEAST, DROPOUT, KEPT, SEED, noise
 from percept_obs.labs.shared.schema import Choice, Number, Optional, Row, Schema, Settings, Several, Text, vector
 from percept_obs.labs.shared.typed_motion import typed_setting
 from percept_obs.labs.shared.view import view_of
@@ -74,7 +74,7 @@ SCHEMA = Schema(
     ),
     duration=Number(30.0, 1, LONGEST, (4, 60), 1, unit="s"),
     window=Number(
-        8.0, 0.1, 120, (0.5, 20), 0.5, unit="s", label="window T", about="window of the Gramian", topic="charts"
+        8.0, 0.1, 120, (0.5, 20), 0.5, unit="s", label="window T", about=f"window of the Gramian, {AT_LEAST}", topic="charts"
     ),
     kept=KEPT,
 )

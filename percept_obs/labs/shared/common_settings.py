@@ -9,6 +9,23 @@ from functools import partial
 from percept_obs.labs.shared.printed import Texts
 from percept_obs.labs.shared.schema import Choice, GainsOf, Group, Kind, Names, Number, Optional, Whole
 from percept_obs.observers import Observer
+from percept_obs.recording import Recording
+
+AT_LEAST = "at least from one sample to the next"
+"""How long a window is, whatever is asked for, as window_in() has it in Python and windowIn() in the page."""
+
+
+def window_in(recording: Recording, asked: float) -> float:
+    """Seconds of a window in a recording: as long as asked, but no longer than it, and no shorter than its intervals.
+
+    Examples
+    --------
+    >>> from percept_obs.recording import Camera, record, scenarios
+    >>> recording = record(scenarios.drive(), camera=Camera(0.5))
+    >>> [window_in(recording, asked) for asked in (0.3, 2.0, 30.0)]
+    [0.5, 2.0, 4.0]
+    """
+    return max(min(asked, float(recording.elapsed[-1])), float(recording.intervals.max()))
 
 
 def offering(kind: Kind, names: Iterable[str]) -> Kind:

@@ -10,7 +10,7 @@ import { moduleText, Modules } from "../src/engine/modules.js";
 import { smallestEigenvalue, windowed } from "../src/labs/observer/measures.js";
 import { uniformFrom } from "../src/engine/random.js";
 import { linearScale, logScale, readable, roundStep, short, spread } from "../src/draw/scales.js";
-import { held, interpolate, lastSamples, stepGrid } from "../src/engine/tables.js";
+import { held, interpolate, lastSamples, stepGrid, windowIn } from "../src/engine/tables.js";
 import { inWords, mainly } from "../src/labs/points/directions.js";
 import { absencesOf } from "../src/labs/points/measures.js";
 import { eigen, pseudoInverse, spectrum } from "../src/labs/points/symmetric.js";
@@ -36,6 +36,10 @@ test("a lost sample prolongs the hold, and a line bridges it", () => {
   const { grid, index } = stepGrid(times, 1);
   assert.deepEqual([...held([values], times, grid, index, "zero")], [1, 1, 1, 1, 1, 1]);
   assert.deepEqual([...held([values], times, grid, index, "first")], [1, 1.5, 2, 2, 2.5, 3]);
+});
+
+test("a window is no longer than the run and no shorter than its intervals, as in Python", () => {
+  assert.deepEqual([0.3, 2, 30].map((asked) => windowIn([0, 0.5, 1, 4], asked)), [3, 3, 4]);
 });
 
 test("interpolation is constant outside", () => {

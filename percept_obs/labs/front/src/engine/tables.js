@@ -174,6 +174,13 @@ export function slackOf(time) {
   return (1e-3 * (gaps[Math.floor(middle)] + gaps[Math.ceil(middle)])) / 2;
 }
 
+/** Seconds of a window: as long as asked, but no longer than a run, and no shorter than its intervals. */
+export function windowIn(time, asked) {
+  let longest = 0;
+  for (let k = 1; k < time.length; k++) longest = Math.max(longest, time[k] - time[k - 1]);
+  return Math.max(Math.min(asked, time[time.length - 1] - time[0]), longest);
+}
+
 /** The last sample that is not after a time. */
 export function sampleAt(time, when) {
   let [low, high] = [0, time.length - 1];

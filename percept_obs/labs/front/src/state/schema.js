@@ -2,6 +2,7 @@
 
 /** Holds of the outputs between samples. */
 export const HOLD = { choices: { zero: "the last sample", first: "a line to the next", exact: "the exact signal" } };
+export const WINDOW = { meaning: "at least from one sample to the next" };
 export const NOISE = { kind: { choices: { uniform: "uniform", gaussian: "Gaussian" } } };
 
 /**

@@ -5,7 +5,7 @@ import { columnOf } from "../../engine/derived.js";
 import { distanceError } from "../../engine/errors.js";
 import { evaluated, Runner } from "../../engine/runner.js";
 import { switchOf } from "../../state/settings.js";
-import { known, knownAt, lastSamples, spansOf, stepGrid } from "../../engine/tables.js";
+import { known, knownAt, lastSamples, spansOf, stepGrid, windowIn } from "../../engine/tables.js";
 import { boundOf, noBound, variancesOf } from "./bound.js";
 import { Camera, constantMotion, shapeOf, varies } from "./camera.js";
 import { keyOf } from "./kernels.js";
@@ -105,7 +105,7 @@ export class Engine extends Runner {
   }
 
   excitation({ settings, time, truth, outputs, measured, hidden, width, sampled }, functions) {
-    const window = Math.min(settings.window, time[time.length - 1] - time[0]);
+    const window = windowIn(time, settings.window);
     if (!functions.w) return { window, time: NONE, smallest: NONE, begun: { time: NONE, smallest: NONE } };
     const seen = (c) => (truth ? columnOf(truth, width, c) : lastSamples(columnOf(outputs, sampled, c)));
     const columns = measured.map(seen);

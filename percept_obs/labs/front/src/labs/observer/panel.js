@@ -1,6 +1,6 @@
 // The controls of the observer lab's drawer: each reads from the settings and changes them.
 
-import { HOLD, NOISE } from "../../state/schema.js";
+import { HOLD, NOISE, WINDOW } from "../../state/schema.js";
 import { Fieldsets } from "../../ui/fieldsets.js";
 import { Observers } from "../../ui/observers.js";
 
@@ -10,6 +10,7 @@ export const WORDS = {
   normal: { label: "normal {}" },
   noise: NOISE,
   hold: HOLD,
+  window: WINDOW,
   start: {
     mode: { name: "start", choices: { own: "first sample and 0", zero: "zero", chosen: "chosen values" } },
     values: { name: "start {}", label: "start {}" },

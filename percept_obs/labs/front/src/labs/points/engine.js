@@ -2,7 +2,7 @@
 
 import { settlingTime } from "../../engine/errors.js";
 import { Memory } from "../../engine/memory.js";
-import { differences } from "../../engine/tables.js";
+import { differences, windowIn } from "../../engine/tables.js";
 import { Camera } from "./camera.js";
 import { inversesOf } from "./flow.js";
 import { windowsOf } from "./gramian.js";
@@ -51,7 +51,7 @@ export class PointsEngine {
   /** Gramian of each window. */
   gramian(result, functions, longest = result.settings.window) {
     const { settings, time, seenImages: images } = result;
-    const window = Math.min(longest, time.at(-1));
+    const window = windowIn(time, longest);
     const { model, memory } = this;
     const known = { ...this.scene(settings, functions), ...this.flows(result, functions) };
     return windowsOf({ ...known, model, time, images, window, memory });

@@ -2,7 +2,7 @@
 
 import { button, element } from "../../draw/dom.js";
 import { readable } from "../../draw/scales.js";
-import { HOLD, NOISE } from "../../state/schema.js";
+import { HOLD, NOISE, WINDOW } from "../../state/schema.js";
 import { slider, tick } from "../../ui/controls.js";
 import { Fieldsets } from "../../ui/fieldsets.js";
 import { OWN } from "./kernels.js";
@@ -21,6 +21,7 @@ export const WORDS = {
   },
   points: { depth: { label: "depth", unit: "m", low: 0.5, high: 6, step: 0.05, above: 0 } },
   hidden: { step: 0.5 },
+  window: WINDOW,
   weight: {
     label: "P",
     choices: {

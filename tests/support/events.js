@@ -1,7 +1,7 @@
 // Random events over every control of a lab, the same for the same seed; what went wrong and what was used is returned.
 // Some of the events go to a control that was not used yet, of those that are wanted, so that all have their turn.  Now
 // and then the lab may come to rest, and then all that it shows must be what a fresh engine makes of its settings.
-async ([seed, count, most = 20000, wanted = []]) => {
+window.tests.events = async (seed, count, most = 20000, wanted = []) => {
     const [lab] = window.perceptObsLabs;
     const { root } = lab.view;
     const wrong = [];
@@ -144,4 +144,4 @@ async ([seed, count, most = 20000, wanted = []]) => {
     window.removeEventListener("error", onError);
     window.removeEventListener("unhandledrejection", onError);
     return { wrong, used: [...used] };
-}
+};
