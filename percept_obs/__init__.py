@@ -1,136 +1,32 @@
-"""Observers for perspective dynamic systems: a camera sees directions, an observer recovers distance."""
+"""Observers for perspective dynamic systems: a camera sees directions, an observer recovers distance.
 
-from percept_obs.checking import CannotRead, Review, check
-from percept_obs.observability import (
-    Bound,
-    BoundMap,
-    Efficiency,
-    bound_map,
-    cramer_rao,
-    efficiency,
-    how_observable,
-    instantaneous,
-    lie_derivatives,
-    steered,
-    steering,
-    windowed,
-)
-from percept_obs.observers import (
-    Observer,
-    ekf,
-    extended_kalman,
-    ibo,
-    identifier_based,
-    integral_sliding_mode,
-    ismo,
-    scheduled,
-    sliding_mode,
-    smo,
-    with_point,
-)
-from percept_obs.points import FirstSight, PointsForm, PointsScenario, luenberger
-from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios, seen_on
-from percept_obs.recording.pixels import PixelCamera
-from percept_obs.recording.pose_files import read_euroc, read_tum
-from percept_obs.recording.poses import Poses, rigid_from_poses
-from percept_obs.recording.text_table import Clock
-from percept_obs.structure import StructureAndMotion
-from percept_obs.structure.stages import semigeneral
-from percept_obs.studies.consistency import check_consistency
-from percept_obs.studies.diagnosis import diagnose
-from percept_obs.studies.ensemble import ensemble
-from percept_obs.system.apparent_size import sized
-from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
-from percept_obs.system.motion import Motion, affine, linear, rigid
-from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.surfaces import (
-    BehindCamera,
-    ImagingSurface,
-    chained,
-    ellipsoid,
-    pinhole,
-    plane,
-    sphere,
-    unified,
-)
-from percept_obs.tracking.following import DoesNotFit, track
-from percept_obs.tracking.function import FunctionObserver
-from percept_obs.tracking.run import Run
-from percept_obs.validation import TooMuchWork, WrongKind
+A public name is imported when it is asked for, from where `__init__.pyi` says, which type checkers read as well.
+"""
+
+import ast
+from importlib import import_module
+from importlib.util import find_spec
+from pkgutil import get_data
+from typing import Any
 
 __version__ = "0.1.0"
 
-__all__ = [
-    "BehindCamera",
-    "Bound",
-    "BoundMap",
-    "Camera",
-    "CannotRead",
-    "CanonicalForm",
-    "Clock",
-    "DoesNotFit",
-    "Efficiency",
-    "FirstSight",
-    "FunctionObserver",
-    "Gaussian",
-    "ImagingSurface",
-    "Motion",
-    "NotAffine",
-    "Observer",
-    "PartitionedSystem",
-    "PerspectiveSystem",
-    "PixelCamera",
-    "PointsForm",
-    "PointsScenario",
-    "Poses",
-    "Recording",
-    "Review",
-    "Run",
-    "Scenario",
-    "StructureAndMotion",
-    "TooMuchWork",
-    "Uniform",
-    "WrongKind",
-    "affine",
-    "bound_map",
-    "chained",
-    "check",
-    "check_consistency",
-    "cramer_rao",
-    "diagnose",
-    "efficiency",
-    "ekf",
-    "ellipsoid",
-    "ensemble",
-    "extended_kalman",
-    "how_observable",
-    "ibo",
-    "identifier_based",
-    "instantaneous",
-    "integral_sliding_mode",
-    "ismo",
-    "lie_derivatives",
-    "linear",
-    "luenberger",
-    "pinhole",
-    "plane",
-    "read_euroc",
-    "read_tum",
-    "record",
-    "rigid",
-    "rigid_from_poses",
-    "scenarios",
-    "scheduled",
-    "seen_on",
-    "semigeneral",
-    "sized",
-    "sliding_mode",
-    "smo",
-    "sphere",
-    "steered",
-    "steering",
-    "track",
-    "unified",
-    "windowed",
-    "with_point",
-]
+_STUB = ast.parse(get_data(__name__, "__init__.pyi") or b"")
+_HOMES = {name.name: each.module for each in _STUB.body if isinstance(each, ast.ImportFrom) for name in each.names}
+
+__all__ = list(_HOMES)
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name, or a folder."""
+    if home := _HOMES.get(name):
+        module = import_module(home)
+        value = globals()[name] = getattr(module, name) if hasattr(module, name) else import_module(f"{home}.{name}")
+        return value
+    if not name.startswith("_") and find_spec(f"{__name__}.{name}"):
+        return import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})

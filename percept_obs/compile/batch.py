@@ -75,11 +75,11 @@ def compiled(loop: BatchLoop, language: Language) -> Callable[..., None]:
 
 @lru_cache(maxsize=128)
 def _compiled(loop: BatchLoop, language: Language) -> Callable[..., None]:
+    text = batch_source(loop, language)
     if language == "python":
-        text = batch_source(loop, "numpy")
-        return executed(text, math=np, np=np, where=np.where, some=np.any, exp=np.exp, tanh=np.tanh)
+        return executed(text)
     one, two, three, four = (f"float64[{':, ' * further}::1]" for further in range(4))
     index, indices = "intp[::1]", "intp[:, ::1]"
     own, shared = ", ".join([two] * 4), ", ".join([three] * 3)
     signature = f"({own}, {shared}, {indices}, {one}, {index}, {four}, {one}, float64, float64, intp, {two})"
-    return machine_code(batch_source(loop, "numba"), signature, "batch")
+    return machine_code(text, signature, "batch")

@@ -7,18 +7,17 @@ trajectory is kept.
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.compile import vector_functions
 from percept_obs.compile.equations import Equations, Expressions, Symbols
 from percept_obs.compile.integrator import EACH, LARGEST_SQUARED_STATE, PLACES
+from percept_obs.compile.kernels import Language, beginning
 from percept_obs.compile.loop import Formulas, take_out
 from percept_obs.compile.text import Text, refuse_what_differs
 
@@ -74,14 +73,12 @@ class BatchLoop(NamedTuple):
 
 
 @lru_cache(maxsize=128)
-def batch_source(loop: BatchLoop, language: Literal["numba", "numpy"]) -> str:
+def batch_source(loop: BatchLoop, language: Language) -> str:
     """Text of a function of `ARGUMENTS`, described in `percept_obs.compile.batch`, that fills `result`.
 
-    It is for `BATCH` runs in machine code ("numba"), or for any number of them as arrays ("numpy").
+    It is for `BATCH` runs in machine code, or for any number of them as arrays of numpy.
     """
-    numba = language == "numba"
-    text = _Writer(loop, numba).written()
-    return f"{inspect.getsource(vector_functions)}\n\n{text}" if numba else str(text)
+    return f"{beginning(language)}\n\n{_Writer(loop, language == 'numba').written()}"
 
 
 class _Writer:

@@ -9,7 +9,7 @@ from functools import cached_property
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from percept_obs.compile.intermediate import definitions, written_out
+from percept_obs.compile.intermediate import definitions
 from percept_obs.validation import derived, refuse_names, set_fields, travels
 
 Symbols = tuple[sp.Symbol, ...]
@@ -58,12 +58,6 @@ class Equations:
     def _hash(self) -> int:
         """Hash, which every run looks up and which takes long."""
         return hash(tuple(getattr(self, field.name) for field in fields(self)))
-
-    @cached_property
-    def switches(self) -> bool:
-        """True if the flow or an update jumps, so that rounding decides on which side of a jump a state is."""
-        expressions = (*self.flow, *(entry for block in self.update for entry in block))
-        return any(written_out(each).has(sp.sign, sp.Piecewise, sp.Heaviside) for each in expressions)
 
     def xreplace(self, rule: Mapping[sp.Basic, sp.Basic]) -> Equations:
         """Replace symbols in flow, updates, reset condition and reset."""

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.util import find_spec
+from inspect import getsource
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from percept_obs.compile import vector_functions
 from percept_obs.compile.arrays import Array, Flags
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.functions import executed
 from percept_obs.compile.loop import source
-from percept_obs.compile.machine_code import machine_code
+from percept_obs.compile.machine_code import is_kept, machine_code
 from percept_obs.validation import needed
 
 Language = Literal["python", "numba"]
@@ -24,18 +27,29 @@ Language = Literal["python", "numba"]
 WORTH_COMPILING = 200_000
 """Number of steps that takes Python about as long as numba takes to compile and run them."""
 
+_ready: dict[Equations, bool] = {}
+"""Whether machine code of a loop is known to be there."""
 
-def choose(language: Language | None, steps: float) -> Language:
-    """Choose the language of a loop: numba, if it is installed, for so many steps that they pay for its compiling.
 
-    It depends on nothing but the call, so that a run never changes with what ran before it.  To run the same observer
-    often, pass the steps of all runs together, or ask for numba.
+def choose(language: Language | None, steps: float, equations: Equations | None = None) -> Language:
+    """Choose the language of a loop: numba, if it is installed and these equations are compiled already.
+
+    Otherwise for so many steps that they pay for its compiling.  The states of `solve` are the same bits in both
+    languages.  To compile for several runs, pass the steps of all together, or ask for numba.
     """
     if language not in (None, "python", "numba"):
         raise ValueError(f"the language {language!r} is neither 'python' nor 'numba'")
     if language == "numba":
         needed("fast", "numba")
-    return language or ("numba" if steps >= WORTH_COMPILING and find_spec("numba") else "python")
+    if language is None and steps < WORTH_COMPILING and (equations is None or not _is_compiled(equations)):
+        return "python"
+    return language or ("numba" if find_spec("numba") else "python")
+
+
+def beginning(language: Language) -> str:
+    """Text before a loop over runs or rows: functions of numbers for numba, of whole arrays in Python."""
+    arrays = "\n\nmath, where, some = np, np.where, np.any\n" if language == "python" else ""
+    return getsource(vector_functions) + arrays
 
 
 @dataclass(frozen=True)
@@ -69,7 +83,7 @@ def solve(
     blocks = (start, table.steps, table.measured, table.parameters, table.samples, gains)
     inputs = [np.asarray(block, dtype=float).ravel() for block in blocks]
     varying = len(table.parameters) > 1
-    if choose(language, len(table.steps)) == "python":
+    if choose(language, len(table.steps), equations) == "python":
         states: Any = [math.nan] * (size * count)
         resets: Any = [0.0] * count
         try:
@@ -92,12 +106,24 @@ def _python(equations: Equations) -> Callable[..., int]:
     return executed(source(equations, "python"))
 
 
+def _text(equations: Equations) -> str:
+    return f"import math\n\n\n{source(equations, 'python')}"
+
+
+def _is_compiled(equations: Equations) -> bool:
+    """True if the loop was compiled in this process, or is on the disk and numba loaded, which takes half a second."""
+    if "numba" not in sys.modules:
+        return False
+    if equations not in _ready:
+        _ready[equations] = is_kept(_text(equations))
+    return _ready[equations]
+
+
 @lru_cache(maxsize=512)
 def _compiled(equations: Equations) -> Callable[..., int]:
     from numba import types
 
     array = types.Array(types.float64, 1, "C", readonly=True)  # also takes arrays that may be written to
     signature = (*[array] * 6, types.boolean, types.float64[::1], types.boolean[::1])
-    text = f"import math\n\n\n{source(equations, 'python')}"
-    # rounding moves a reset only if a state is that close to its bound at a step's end; a jump is crossed all the time
-    return machine_code(text, signature, "exact" if equations.switches else "contracted")
+    _ready[equations] = True
+    return machine_code(_text(equations), signature)

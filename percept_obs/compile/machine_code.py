@@ -14,14 +14,14 @@ from typing import Any, Literal
 
 from percept_obs.validation import warn, write_whole
 
-Rounding = Literal["exact", "contracted", "batch"]
+Rounding = Literal["exact", "inlined", "batch"]
 
 OPTIONS: dict[Rounding, dict[str, Any]] = {
     "exact": {"error_model": "numpy"},
-    "contracted": {"error_model": "numpy", "fastmath": {"contract"}},
+    "inlined": {"error_model": "numpy"},
     "batch": {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True},
 }
-"""Options of numba: rounding as in Python; a product and a sum rounded once, in no other order; and this in threads."""
+"""Options of numba: rounding as in Python, also of functions inside the loop; a product and a sum rounded once."""
 
 
 class NotKept(UserWarning):
@@ -37,18 +37,15 @@ def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Cal
     its hash; it must hold all that the code depends on, and may be deleted at any time.
     """
     import numba
-    from platformdirs import user_cache_path
 
-    options = OPTIONS[rounding]
-    text = f'"""A loop of percept_obs, which numba compiles with {options}."""\n\n{text}'
-    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("percept_obs"))
-    file = folder / f"loop_{hashlib.sha256(text.encode()).hexdigest()[:32]}.py"
+    options, (text, file) = OPTIONS[rounding], _file(text, rounding)
+    folder = file.parent
 
     def compiled(place: str, kept: bool) -> Callable[..., Any]:
         module = sys.modules[file.stem] = ModuleType(file.stem)  # where numba looks for the code of a file
         exec(compile(text, place, "exec"), vars(module))
         *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
-        inside = rounding == "batch"  # of the loop, for a call stops vector instructions
+        inside = rounding != "exact"  # of the loop, for a call stops vector instructions
         for name in others:
             setattr(module, name, numba.njit(forceinline=inside, **options)(getattr(module, name)))
         found: Callable[..., Any] = numba.njit([signature], cache=kept, **options)(getattr(module, last))
@@ -67,6 +64,21 @@ def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Cal
         found = compiled("<printed>", False)
         _tell(folder, type(error).__name__)
         return found
+
+
+def is_kept(text: str, rounding: Rounding = "exact") -> bool:
+    """Return True if machine code of a text is on the disk."""
+    _, file = _file(text, rounding)
+    return any(file.parent.glob(f"*/{file.stem}.*.nbi"))
+
+
+def _file(text: str, rounding: Rounding) -> tuple[str, Path]:
+    """The whole text, and its file, which need not exist."""
+    from platformdirs import user_cache_path
+
+    text = f'"""A loop of percept_obs, which numba compiles {rounding}, with {OPTIONS[rounding]}."""\n\n{text}'
+    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("percept_obs"))
+    return text, folder / f"loop_{hashlib.sha256(text.encode()).hexdigest()[:32]}.py"
 
 
 @lru_cache  # so that it warns once

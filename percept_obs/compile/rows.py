@@ -10,8 +10,8 @@ import sympy as sp
 
 from percept_obs.compile.arrays import Array
 from percept_obs.compile.equations import Symbols
-from percept_obs.compile.functions import vectorised
-from percept_obs.compile.kernels import Language
+from percept_obs.compile.functions import executed
+from percept_obs.compile.kernels import Language, beginning
 from percept_obs.compile.loop import take_out
 from percept_obs.compile.machine_code import machine_code
 from percept_obs.compile.text import Text
@@ -25,34 +25,32 @@ def by_row(
 ) -> Rows:
     """Make a function of tables with K rows and of constants that gives expressions, shape (K, expressions).
 
-    A condition gives 1 where it holds.  Python's function runs in numpy.
+    A condition gives 1 where it holds.  Python's function runs in numpy, and gives the same bits where the expressions
+    have no other function than roots, exp and tanh.
     """
+    text = _source(tables, constants, expressions, language)
     if language == "python":
-        symbols = tuple(symbol for table in tables for symbol in table)
+        loop = executed(text)
+    else:
+        from numba import types
 
-        def in_numpy(arrays: Sequence[Array], numbers: Array) -> Array:
-            evaluate = vectorised(symbols, expressions, dict(zip(constants, numbers, strict=True)))
-            with np.errstate(all="ignore"):
-                return np.stack(evaluate(*(column for array in arrays for column in array.T)), axis=-1)
+        table, flat = (types.Array(types.float64, *kind, readonly=True) for kind in ((2, "A"), (1, "C")))
+        loop = machine_code(text, (*[table] * len(tables), flat, types.float64[:, ::1]), "inlined")
 
-        return in_numpy
-    from numba import types
-
-    table, flat = (types.Array(types.float64, *kind, readonly=True) for kind in ((2, "A"), (1, "C")))
-    signature = (*[table] * len(tables), flat, types.float64[:, ::1])
-    machine = machine_code(_source(tables, constants, expressions), signature, "batch")
-
-    def in_machine_code(arrays: Sequence[Array], numbers: Array) -> Array:
+    def rows(arrays: Sequence[Array], numbers: Array) -> Array:
         values = np.empty((len(arrays[0]), len(expressions)))
-        machine(*arrays, numbers, values)
+        with np.errstate(all="ignore"):
+            loop(*arrays, numbers, values)
         return values
 
-    return in_machine_code
+    return rows
 
 
-def _source(tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[sp.Basic, ...]) -> str:
-    """Text of the loop over the rows; terms of constants only stand before it."""
-    text, fixed, arguments = Text("python"), dict[sp.Expr, sp.Symbol](), [f"table{k}" for k in range(len(tables))]
+def _source(
+    tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[sp.Basic, ...], language: Language
+) -> str:
+    """Text of the loop over the rows, in numpy over all at once; terms of constants only stand before it."""
+    text, fixed, arguments = Text("batch"), dict[sp.Expr, sp.Symbol](), [f"table{k}" for k in range(len(tables))]
     places = {s: f"{name}[i, {k}]" for name, of in zip(arguments, tables, strict=True) for k, s in enumerate(of)}
     names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate((*places, *constants))}
     left = [take_out(e.xreplace(names), {names[symbol] for symbol in constants}, fixed) for e in expressions]
@@ -61,10 +59,10 @@ def _source(tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[
             text.assign(names[symbol].name, f"numbers[{k}]")
         for expression, name in fixed.items():
             text.assign(name.name, text.print(expression))
-        with text.loop("i", "values"):
+        with text.over("(slice(None),)" if language == "python" else "range(len(values))"):
             for symbol, place in places.items():
                 text.assign(names[symbol].name, place)
             text.formulas(left, "e")
             for k in range(len(left)):
                 text.store(f"values[i, {k}]", f"e{k}")
-    return f"import math\n\n\n{text}"
+    return f"{beginning(language)}\n\n{text}"

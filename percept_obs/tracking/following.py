@@ -175,17 +175,19 @@ def _follow_one_point(
     _warn_of_long_steps(observer, grid)
     times = grid.instants if believed.constants is None else grid.times[:1]  # many instants take long
     known = known_signals(believed, recording.view, times, recording.unit)
-    scale = dict(zip(map(str, recording.view.coordinates), recording.scale.tolist(), strict=True))
-    named = {name: value * scale.get(name, 1.0) for name, value in named_start(start, form.coordinates).items()}
+    units = dict(zip((symbol.name for symbol in recording.view.coordinates), recording.scale.tolist(), strict=True))
+    named = {name: value * units.get(name, 1.0) for name, value in named_start(start, form.coordinates).items()}
     outputs = dict(zip(form.measured, samples[0].tolist(), strict=True))
     initial = state_at_start(observer, outputs, named, zip(form.parameters, known[0].tolist(), strict=True))
     arriving = np.empty((0, len(form.measured)))
     if observer.equations.update:
-        arriving = np.full((len(grid.times), len(form.measured)), np.nan)
-        arriving[grid.index] = samples
+        arriving = np.array(samples)
+        if not grid.one_step_a_sample:
+            arriving = np.full((len(grid.times), len(form.measured)), np.nan)
+            arriving[grid.index] = samples
         arriving[0, [name not in named for name in form.measured]] = np.nan  # the start already uses these samples
     table = Table(grid.steps, grid.held(filled=True)[..., columns], known, arriving)
-    language = choose(language, len(grid.steps))
+    language = choose(language, len(grid.steps), observer.equations)
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
     states = trace.states if grid.one_step_a_sample else trace.states[grid.index]
     at_samples = known if len(known) == 1 else known[EACH * grid.index]
@@ -193,7 +195,8 @@ def _follow_one_point(
     estimate, unobservable = _estimates(observer, states, filled, at_samples, recording.elapsed, language)
     diverged_at = None if trace.diverged is None else float(grid.times[trace.diverged])
     resets = grid.times[trace.resets.nonzero()[0]]
-    return Run(recording, observer, estimate / recording.scale, states, diverged_at, grid.hold, resets, unobservable)
+    scaled = estimate if recording.unit == 1 else estimate / recording.scale  # a copy takes a fifth of a short run
+    return Run(recording, observer, scaled, states, diverged_at, grid.hold, resets, unobservable)
 
 
 def _estimates(

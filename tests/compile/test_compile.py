@@ -22,7 +22,7 @@ from percept_obs import Camera, Uniform, ibo, record, scenarios, track
 from percept_obs.compile import NotCompilable, Table, integrator, kernels, machine_code, solve, source, vector_functions
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.integrator import EACH
-from percept_obs.compile.machine_code import NotKept
+from percept_obs.compile.machine_code import NotKept, is_kept
 from percept_obs.compile.rows import by_row
 from percept_obs.figures import look
 from percept_obs.labs.printing import INTEGRATOR, LOOKS, MODELS, models
@@ -30,34 +30,18 @@ from percept_obs.observers import OBSERVERS, linear_approximation
 from percept_obs.points import kernel as points_kernel
 
 x, y, u, k, c = sp.symbols("x y u k c", real=True)
-FORMS = {"y1": ONE, "y1+y2": BOTH, "y1 of a sphere": ON_SPHERE.partition("y1")}
-# a short cascade has all that a long one has, and compiles sooner
-EVERY = {make.__name__: make for make in OBSERVERS} | {
-    "linear_approximation": partial(linear_approximation, iterates=2)
-}
-PAIRS = [(make.__name__, name) for make in OBSERVERS for name, form in FORMS.items() if not make.refusal(form)]
+every_observer = pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 
 
 @cache
-def observer_of(name, outputs):
-    return EVERY[name](FORMS[outputs])
+def observers_of(make):
+    """One observer of each form that it fits; a short cascade has all that a long one has, and compiles sooner."""
+    make_short = partial(make, iterates=2) if make is linear_approximation else make
+    return [make_short(form) for form in (ONE, BOTH, ON_SPHERE.partition("y1")) if not make.refusal(form)]
 
 
-def seen_by(outputs, duration):
-    return record(scenarios.ma2005_eq35(FORMS[outputs].view), duration, NOISY, seed=3)
-
-
-def table_of(monkeypatch, recording, observer, **settings):
-    """What `track` hands to `solve`."""
-    handed = {}
-
-    def keep(equations, start, table, gains, language):
-        handed.update(equations=equations, start=start, table=table, gains=gains)
-        return solve(equations, start, table, gains, "python")
-
-    monkeypatch.setattr(tracking, "solve", keep)
-    track(recording, observer, **settings)
-    return handed
+def seen_by(observer, duration):
+    return record(scenarios.ma2005_eq35(observer.form.view), duration, NOISY, seed=3)
 
 
 def steps(count, length=0.1, measured=0, parameters=0):
@@ -74,14 +58,13 @@ def both_languages(equations, start, table, gains=()):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "outputs"), PAIRS)
-def test_python_and_numba_agree(name, outputs):
-    recording, observer = seen_by(outputs, 20), observer_of(name, outputs)
-    python, compiled = (track(recording, observer, ZERO, language=language) for language in ("python", "numba"))
-    np.testing.assert_allclose(compiled.state, python.state, rtol=1e-12, atol=1e-12)
-    assert compiled.resets.tolist() == python.resets.tolist()
-    np.testing.assert_allclose(compiled.estimate, python.estimate, rtol=1e-10, atol=1e-11)
-    assert compiled.unobservable.tolist() == python.unobservable.tolist()
+@every_observer
+def test_python_and_numba_give_the_same_bits(make):
+    for observer in observers_of(make):
+        recording = seen_by(observer, 20)
+        python, compiled = (track(recording, observer, ZERO, language=language) for language in ("python", "numba"))
+        for name in ("state", "resets", "estimate", "unobservable"):
+            np.testing.assert_array_equal(getattr(compiled, name), getattr(python, name), name)
 
 
 @pytest.mark.slow
@@ -95,28 +78,6 @@ def test_rows_are_read_alike_in_numpy_and_in_machine_code_however_many_there_are
         np.testing.assert_allclose(compiled(*given), python(*given), rtol=1e-14, atol=1e-15)
 
 
-@pytest.mark.slow
-def test_a_product_and_a_sum_rounded_once_move_no_reset():
-    observer, draw, counted = observer_of("identifier_based", "y1"), np.random.default_rng(5), 0
-    recording = record(scenarios.ma2005_eq35(), 5, NOISY, seed=3)
-    for _ in range(30):
-        driven = observer.with_gains(gain=draw.uniform(2, 30), bound=draw.uniform(0.5, 3))
-        start = draw.uniform(-1, 1, 3)
-        python, compiled = (track(recording, driven, start, language=language) for language in ("python", "numba"))
-        assert compiled.resets.tolist() == python.resets.tolist()
-        counted += len(python.resets)
-    assert counted > 1000
-
-
-@pytest.mark.slow
-def test_only_flows_that_do_not_jump_are_rounded_less_often(monkeypatch):
-    asked = []
-    monkeypatch.setattr(kernels, "machine_code", lambda text, signature, rounding: asked.append(rounding))
-    for flow in (-x, sp.tanh(x), sp.sign(x), sp.Piecewise((x, x > 0), (0, True))):
-        kernels._compiled(Equations((x,), (sp.Rational(13, 7) * flow,)))
-    assert asked == ["contracted", "contracted", "exact", "exact"]
-
-
 def test_outputs_that_last_for_a_step_are_given_once():
     equations, rows = Equations((x,), (u - x,), (u,)), np.linspace(0, 1, 40)[:, None, None]
     each = Table(np.full(40, 0.1), np.repeat(rows, EACH + 1, axis=1), np.zeros((1, 0)), np.empty((0, 1)))
@@ -128,14 +89,18 @@ def test_outputs_that_last_for_a_step_are_given_once():
 
 @pytest.mark.slow
 @pytest.mark.node
-@pytest.mark.parametrize(("name", "outputs"), PAIRS)
-def test_javascript_agrees(monkeypatch, node, name, outputs):
+@every_observer
+def test_javascript_agrees(monkeypatch, node, make):
     """Over one step where the right-hand side switches."""
-    duration, tolerance = (0.01, 1e-12) if name == "sliding_mode" else (30, 1e-9)
-    handed = table_of(monkeypatch, seen_by(outputs, duration), observer_of(name, outputs), start=ZERO)
-    here, there = solve(**handed, language="python"), solve_in_node(node, **handed)
-    np.testing.assert_allclose(there.states, here.states, rtol=tolerance, atol=tolerance)
-    assert there.diverged == here.diverged
+    duration, tolerance = (0.01, 1e-12) if make.key == "sliding_mode" else (30, 1e-9)
+    handed = []
+    monkeypatch.setattr(tracking, "solve", lambda *given: handed.append(given) or solve(*given))
+    for observer in observers_of(make):
+        here = track(seen_by(observer, duration), observer, ZERO, language="python")
+        *given, _ = handed.pop()
+        there = solve_in_node(node, *given)
+        np.testing.assert_allclose(there.states[-1], here.state[-1], rtol=tolerance, atol=tolerance)
+        assert (there.diverged is None) == (here.diverged_at is None)
 
 
 @pytest.mark.slow
@@ -207,13 +172,28 @@ def test_the_call_alone_says_in_which_language_it_runs(monkeypatch):
         kernels.choose("numba", 1)
 
 
-def test_a_run_is_made_in_the_language_that_was_chosen(monkeypatch):
-    made = []
-    monkeypatch.setattr(kernels, "_compiled", lambda equations: lambda *given: made.append(equations) or -1)
+@pytest.mark.parametrize("compiled", ["nowhere", "here", "kept", "kept, but numba is not loaded"])
+def test_a_short_run_takes_machine_code_that_is_there_already(monkeypatch, compiled):
+    made, short, long = [], 10, kernels.WORTH_COMPILING
     equations = Equations((x,), (-k * x + sp.Rational(1, 7),), (), (k,))
-    for count in (10, kernels.WORTH_COMPILING):
+    monkeypatch.setattr(kernels, "_ready", {equations: True} if compiled == "here" else {})
+    monkeypatch.setattr(kernels, "is_kept", lambda text: compiled.startswith("kept"))
+    monkeypatch.setitem(sys.modules, "numba", kernels)
+    if compiled.endswith("not loaded"):
+        monkeypatch.delitem(sys.modules, "numba")
+    monkeypatch.setattr(kernels, "_compiled", lambda equations: lambda *given: made.append(len(given[1])) or -1)
+    for count in (short, long):
         solve(equations, [1.0], steps(count, parameters=1))
-    assert made == [equations]
+    assert made == ([short, long] if compiled in ("here", "kept") else [long])
+
+
+def test_what_is_kept_is_found(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))  # which numba read when it was imported
+    text = "def run(x):\n    return x / 9.0\n"
+    assert not is_kept(text)
+    machine_code(text, "(float64,)")
+    assert is_kept(text)
 
 
 LOOPS = """

@@ -142,6 +142,8 @@ def test_scatter_is_that_of_repeated_sets_of_runs():
     assert np.std([each.mean() for each in found]) == pytest.approx(
         np.mean([each.scatter() for each in found]), rel=0.1
     )
+    without = [Efficiency(np.zeros(1), np.delete(found[0].errors, k, 0), np.ones(1)).mean() for k in range(40)]
+    assert found[0].scatter() == pytest.approx(np.sqrt(39) * np.std(without), rel=1e-12)
     assert found[0].bias() == pytest.approx(abs(found[0].errors.mean()))
 
 

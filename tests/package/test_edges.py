@@ -186,6 +186,13 @@ def test_cholesky_by_loops_solves():
     np.testing.assert_allclose(kernel.solve_by_loops(P, right), np.linalg.solve(P, right), rtol=1e-12)
 
 
+@pytest.mark.parametrize("combine", [kernel.combine_by_loops, kernel.combine_by_numpy])
+def test_the_kernel_combines_as_numpy(combine):
+    (first, second), target = np.random.default_rng(0).normal(size=(2, 5)), np.zeros(5)
+    combine(target, first, -0.3, second)
+    np.testing.assert_allclose(target, first - 0.3 * second, rtol=1e-15)
+
+
 def test_a_body_is_seen_on_the_surface_that_is_asked_for():
     tilted = plane([0.1, -0.2, 0.9])
     assert rigid_body(2, surface=tilted).surface == tilted

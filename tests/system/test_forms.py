@@ -27,6 +27,14 @@ def test_the_form_is_the_system_again(motion, surface):
         assert form.measured == names
 
 
+def test_the_inverse_of_a_form_with_denominators_undoes_w():
+    form = replace(BOTH, w=BOTH.w / (1 + BOTH.x1[0] ** 2) + sp.ImmutableMatrix([[1 / BOTH.x1[1], 0]]))
+    numerator, determinant = form.cramer
+    values = {symbol: sp.Rational(k, 7) for k, symbol in enumerate(sorted(form.w.free_symbols, key=str), 2)}
+    assert (numerator * form.w.T / determinant).subs(values) == sp.eye(1)
+    assert sp.denom(sp.together(determinant)) == 1
+
+
 def test_what_may_be_measured_can_be_asked():
     for name in ("pinhole", "chained", "plane"):
         assert PerspectiveSystem(MOTIONS["affine"], SURFACES[name]).output_choices == (("y1", "y2"), ("y1",), ("y2",))

@@ -7,7 +7,7 @@ import pytest
 from examples import BOTH, ONE
 from refusals import refuses
 
-from percept_obs import Camera, FunctionObserver, Gaussian, ekf, record, scenarios, track
+from percept_obs import Camera, FunctionObserver, Gaussian, affine, ekf, record, scenarios, track
 from percept_obs.compile import vectorised
 from percept_obs.compile.integrator import step as step_of
 from percept_obs.labs import observer_lab, structure_lab
@@ -112,6 +112,20 @@ test_the_page_refuses_it = refuses(
     (observer_lab, "is a Python function, which the page cannot run; let it follow with track"),
     (structure_lab, "is a Python function, which the page cannot run"),
 )
+
+
+def test_a_step_knows_the_motion_in_its_middle():
+    motion, seen = affine(np.zeros((3, 3)), lambda time: [np.sin(3 * time), time, 1]), []
+
+    def step(state, sample, seconds, known):
+        seen.append(known)
+        return state
+
+    watching = FunctionObserver("watching", BOTH, np.copy, step, np.copy)
+    track(SEEN.between(0, 0.2), watching, START, believed=motion)
+    middle = SEEN.time[:20] + 0.005
+    np.testing.assert_allclose([known["b1"] for known in seen], np.sin(3 * middle), rtol=1e-12)
+    np.testing.assert_allclose([known["b2"] for known in seen], middle, rtol=1e-12)
 
 
 def test_a_claim_that_is_not_there_and_a_first_sample_that_was_lost():
