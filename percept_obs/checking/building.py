@@ -28,7 +28,7 @@ _RELATIONS = {
 
 
 class Builder:
-    """Values of a tree's nodes; a method named like a rule of the grammar, with _ before, returns the rule's value.
+    """Turns a parsed tree into sympy: the method _x returns the value of a node that the grammar's rule x made.
 
     `sides` are the right sides of lines by the names on their left: a letter that has one is worth it.
     """
@@ -41,7 +41,7 @@ class Builder:
         self.within: list[str] = []
 
     def side(self, name: str, at: Token) -> tuple[Any, ...]:
-        """Return the values of a line by its name, computed once."""
+        """Return what a line says a letter is, computed once: a value for each part of a chain q = a = b."""
         if name in self.within:
             self.refuse(f'"{name}" is given by itself; begin with what is known', at)
         if name not in self.values:
@@ -54,7 +54,7 @@ class Builder:
         return self.values[name]
 
     def written(self, value: Any, node: Any) -> Any:
-        """Return a value that is not too large once all letters are put in."""
+        """Return the value as it is; refuse its node if it is too large once all definitions are put in."""
         if isinstance(value, sp.Basic) and (why := refused(value)):
             self.refuse(why, node)
         return value

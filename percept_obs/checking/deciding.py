@@ -19,11 +19,12 @@ from percept_obs.checking.proving import dimension, identical, ratio
 from percept_obs.checking.sampling import Place, places, region, sample
 
 POINTS, TRIALS, LARGEST, FEW = 12, 60, 2000, 150
+"""Places that must agree for a "yes"; seeds tried; terms of a small formula; parts of one sampled thoroughly."""
 MATRICES = (sp.MatrixBase, sp.MatrixExpr)
 
 
 def explicit(formula: sp.Basic) -> sp.Basic:
-    """Write matrices of letters out, letters such as sigma^2 as powers, and rename bound letters.
+    """Return a formula with matrices entry by entry, sigma^2 as a power of sigma, and bound letters renamed.
 
     Where the size n of a matrix is a letter, it is written out with two rows, m with three: an identity of matrices of
     that size.
@@ -138,7 +139,7 @@ def decided(one: sp.Expr, other: sp.Expr) -> Decision:
 
 _JUMPS = (sp.sign, sp.Heaviside, sp.Piecewise, sp.floor, sp.ceiling)
 _NUMBERS = (sp.NumberSymbol, sp.I, sp.Abs, sp.Max, sp.Min, *_JUMPS)
-"""Functions that may be related to others in ways that are not known."""
+"""Parts with which a "no" of `identical` is not certain, for it does not know all relations between them."""
 
 
 def same(one: sp.Expr, other: sp.Expr) -> bool | None:
@@ -208,7 +209,7 @@ def _vanishing(expression: sp.Expr, nonzero: set[sp.Symbol]) -> list[sp.Expr] | 
 
 
 def _vanish_together(one: sp.Expr, other: sp.Expr) -> bool | None:
-    """Return True for multiples of each other, and for sums of squares whose bases are sums of each other."""
+    """Return True if two polynomials surely have the same zeros: multiples, or squares of bases with the same span."""
     if proportional(one, other):
         return True
     bases = _squares(one), _squares(other)

@@ -86,7 +86,7 @@ def _squares(field: Any, letters: Mapping[sp.Expr, sp.Symbol]) -> Iterator[tuple
 
 
 def _reduced(polynomial: Any, number: int, square: Any) -> Any:
-    """Return a polynomial in which a letter's square is put in."""
+    """Return a polynomial in which a polynomial replaces the square of a letter, given by its number."""
     found = polynomial.ring.zero
     for powers, coefficient in polynomial.terms():
         rest = (*powers[:number], powers[number] % 2, *powers[number + 1 :])

@@ -63,7 +63,7 @@ class Notation:
         return raw
 
     def _sums(self, tokens: list[Token]) -> list[Token]:
-        """Write sums with numbers as their bounds out."""
+        """Write out sums whose bounds are numbers, term by term."""
         for start in range(len(tokens) - 1, -1, -1):
             if tokens[start].type != "SUM":
                 continue
@@ -85,7 +85,7 @@ class Notation:
         return tokens
 
     def _numbers(self, tokens: list[Token]) -> list[Token]:
-        """Decimal commas, digits with an exponent of ten, and the transpose; refuse long numbers and deep brackets."""
+        """Read decimal commas, exponents of ten and transposes; refuse long numbers and deeply nested brackets."""
         out: list[Token] = []
         opened: list[str] = []
         for token in tokens:

@@ -16,7 +16,7 @@ from percept_obs.compile import Intermediate
 DIGITS = 60
 ACCENTS = r"(?<=[A-Za-z0-9])(?:hat|bar|tilde|dot)"
 KINKED = (sp.Abs, sp.sign, sp.Piecewise, sp.Max, sp.Min, sp.floor, sp.ceiling)
-"""Functions that may agree on many points and differ elsewhere."""
+"""Functions with kinks or jumps: formulas with them may agree at many points and differ elsewhere."""
 
 
 class NoValue(ArithmeticError):

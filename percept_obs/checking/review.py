@@ -29,7 +29,7 @@ MARKS = {
 }
 CANNOT_BE_TOLD = "It cannot be told whether this is the same; write it closer to the usual form."
 DECIDING = 0.55 * SECONDS
-"""The rest of the time is left for printing."""
+"""Seconds for deciding and explaining; the rest of `SECONDS` is left for printing."""
 HINTS = ("which line", "which term", "which slip, and in which step")
 
 

@@ -16,7 +16,9 @@ from percept_obs.checking.points import KINKED, NoValue, Point, key
 from percept_obs.checking.proving import powers
 
 PLACES, TRIALS, DIGITS, MANY_DIGITS = 24, 160, 60, 1200
+"""Places that are compared at least, and draws of them at most; digits of formulas in `WRITTEN_OUT`, and of others."""
 WRITTEN_OUT = (sp.Integral, sp.Derivative, sp.Sum)
+"""Expressions that are computed numerically, which takes long with many digits."""
 KINKS = (*KINKED, sp.Heaviside)
 _chance = random.SystemRandom()
 _SIGNS: dict[type, Callable[[Any], bool]] = {
@@ -30,7 +32,7 @@ _SIGNS: dict[type, Callable[[Any], bool]] = {
 
 
 class Place(Point):
-    """Real values of letters, and of expressions as far as all their parts are real, with many digits."""
+    """Real values of letters, and those of expressions in them, with many digits; NoValue where a part is not real."""
 
     def __init__(self, letters: dict[str, float], digits: int = DIGITS, real: bool = True) -> None:
         super().__init__(0, exact=True)
@@ -135,7 +137,7 @@ def places(*formulas: sp.Basic) -> Iterator[dict[str, float]]:
 
 
 def _allowed(letter: sp.Symbol, value: float) -> float:
-    """Return a value as the letter's assumptions want it."""
+    """Return the value, rounded or with another sign if the letter is an integer or has a sign."""
     value = float(round(value)) if letter.is_integer else value
     if letter.is_nonnegative or letter.is_nonpositive:
         value = abs(value) if letter.is_nonnegative else -abs(value)

@@ -48,7 +48,7 @@ class Words(Notation):
         return found
 
     def _leniently(self, change: Callable[[list[Token]], list[Token]], tokens: list[Token]) -> list[Token]:
-        """Change tokens, or those words that can be, and leave what is refused as it is."""
+        """Return changed tokens; if that is refused, those with the words changed that can be."""
         with suppress(CannotRead):
             return change(tokens)
         if change != self._told:

@@ -32,6 +32,7 @@ def vectorised(
     def evaluate(*arrays: ArrayLike) -> list[Array]:
         columns = [np.asarray(a, dtype=float) for a in arrays]
         found = np.empty((len(expressions), *np.broadcast_shapes(*(column.shape for column in columns))))
+        # an expression without symbols gives one number, which is spread over the arrays' shape
         for k, result in enumerate(function(*columns, *constants)):
             found[k] = result
         return list(found)

@@ -124,6 +124,7 @@ def common_subexpressions(
     first: list[tuple[sp.Symbol, sp.Expr]] = []
     for each in intermediates(expressions):
         shared, (value,) = sp.cse([each.written_out.xreplace(known)], symbols=names)
+        # later results may use this one by its name
         known[each] = next(names)
         first += [*shared, (known[each], value)]
     shared, left = sp.cse([e.xreplace(known) for e in expressions], symbols=names)

@@ -74,6 +74,7 @@ def solve(
         resets: Any = [0.0] * count
         try:
             diverged = _python(equations)(*(block.tolist() for block in inputs), varying, states, resets)
+        # Python raises where numba returns inf or NaN: the first row that is not filled is where it diverged
         except (ArithmeticError, ValueError):
             diverged = next(k for k in range(count) if math.isnan(states[size * k]))
     else:

@@ -21,7 +21,7 @@ OPTIONS: dict[Rounding, dict[str, Any]] = {
     "contracted": {"error_model": "numpy", "fastmath": {"contract"}},
     "batch": {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True},
 }
-"""Options of numba: rounding as in Python; a product and a sum rounded once, in no other order; and this in threads."""
+"""Options of numba: rounding as in Python; a b + c may be rounded once only; the same, and threads may run at once."""
 
 
 class NotKept(UserWarning):

@@ -28,7 +28,7 @@ FUNCTIONS = (
 
 BUILT = (sp.Add, sp.Mul, sp.Symbol, sp.Abs, sp.sign, sp.NumberSymbol, sp.Piecewise, ExprCondPair, Boolean, Intermediate)
 KNOWN = (*BUILT, *FUNCTIONS)
-"""Expressions that are printed alike, besides numbers and some powers."""
+"""Kinds of expressions that mean the same in every language, besides numbers and some powers."""
 
 
 class NotCompilable(ValueError):
@@ -40,6 +40,7 @@ def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
     named = [each.written_out for each in intermediates(expressions)]
     for expression in (*expressions, *named):
         for node in sp.preorder_traversal(expression):
+            # languages raise to other powers with different rounding, or cannot at all
             power_fits = isinstance(node, sp.Pow) and (2 * node.exp).is_Integer and abs(node.exp) <= LARGEST_PRODUCT
             finite = node.is_number and node.is_finite and (node.is_Rational or node.is_Float)
             if not (power_fits or finite or isinstance(node, KNOWN)):
@@ -102,6 +103,7 @@ class _Printer(PythonCodePrinter):
         if condition != sp.true:
             raise NotCompilable(f"{expr} is not defined everywhere; end it with (expression, True)")
         text = self._print(last)
+        # the first condition that holds counts, so that the last branch is the innermost choice
         for branch, condition in reversed(branches):
             text = self._choice(self._print(condition), self._print(branch), text)
         return text

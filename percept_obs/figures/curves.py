@@ -24,23 +24,23 @@ NARROWEST = 0.4
 """Least ratio of the sides of a picture in space or in the image."""
 
 
-def limits(firm: ArrayLike, loose: ArrayLike = (), reach: float = 2.0) -> tuple[float, float]:
-    """Return the ends of an axis that holds all firm values, and loose ones at most `reach` spans away from them."""
-    firm, loose = describe.finite(firm), describe.finite(loose)
-    low, high = (firm.min(), firm.max()) if firm.size else (0.0, 1.0)
+def limits(required: ArrayLike, optional: ArrayLike = (), reach: float = 2.0) -> tuple[float, float]:
+    """Return an axis's ends around all required values, and optional ones at most `reach` spans away from these."""
+    required, optional = describe.finite(required), describe.finite(optional)
+    low, high = (required.min(), required.max()) if required.size else (0.0, 1.0)
     constant = high - low <= 1e-3 * abs(high)
     size = max(abs(high) / 2 if constant else high - low, 1e-12)
-    near = loose[(loose >= low - reach * size) & (loose <= high + reach * size)]
+    near = optional[(optional >= low - reach * size) & (optional <= high + reach * size)]
     low, high = near.min(initial=low), near.max(initial=high)
     margin = 0.06 * max(high - low, size)
     return low - margin, high + margin
 
 
-def linear(ax: Axes, firm: Array, loose: Array, what: str, reach: float = 2.0) -> str:
-    """Fit the axis to the firm values, and say how many of the loose ones it leaves out."""
-    ends = limits(firm, loose, reach)
+def linear(ax: Axes, required: Array, optional: Array, what: str, reach: float = 2.0) -> str:
+    """Set the axis's `limits`, and return a sentence on how many of the optional values lie outside."""
+    ends = limits(required, optional, reach)
     ax.set_ylim(*ends)
-    return _left_out(loose, ends, what)
+    return _left_out(optional, ends, what)
 
 
 def log(ax: Axes, values: Array, what: str, highest: float = np.inf, ticks: str = "") -> str:
@@ -58,21 +58,21 @@ def log(ax: Axes, values: Array, what: str, highest: float = np.inf, ticks: str 
 
 
 def _left_out(values: Array, ends: tuple[float, float], what: str) -> str:
-    """Say how many values are not on the axis."""
+    """Return a sentence on how many values are not on the axis, and which; empty if all are."""
     seen = describe.finite(values)
     outside = seen[(seen < ends[0]) | (seen > ends[1])]
     return f"Outside the axis: {outside.size} of {what}, {describe.span(outside)}." if outside.size else ""
 
 
-def not_a_strip(*ends: tuple[float, float]) -> list[tuple[float, float]]:
-    """Return limits, extended until no side is much shorter than another."""
+def widened_limits(*ends: tuple[float, float]) -> list[tuple[float, float]]:
+    """Return the limits of a picture's axes, widened until none is shorter than `NARROWEST` of the longest."""
     longest = max(high - low for low, high in ends)
     missing = [max(0.0, NARROWEST * longest - (high - low)) / 2 for low, high in ends]
     return [(low - m, high + m) for (low, high), m in zip(ends, missing, strict=True)]
 
 
-def complete(rows: Array) -> Array:
-    """Return the rows without NaN, shape (K, n)."""
+def rows_without_nan(rows: Array) -> Array:
+    """Return the rows that have no NaN, shape (K, n)."""
     return rows[np.isfinite(rows).all(axis=1)]
 
 

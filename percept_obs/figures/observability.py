@@ -124,7 +124,7 @@ def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -
     ax.grid(False)
     ax.set(xlabel=describe.label("y1", system.surface), ylabel=describe.label("y2", system.surface))
     if own:
-        base.whole(ax).colorbar(picture, ax=ax, shrink=0.8, label="least error of the distance (%)")
+        base.root_figure(ax).colorbar(picture, ax=ax, shrink=0.8, label="least error of the distance (%)")
     best, worst = (
         np.unravel_index(pick(found.relative), found.relative.shape) for pick in (np.nanargmin, np.nanargmax)
     )
@@ -297,7 +297,7 @@ def _annotate_least(ax: Axes, one: Excitation) -> str:
 
 
 FINEST = 1.3
-"""Factor between the ends of the colours that a figure has at least, so that no round-off is seen."""
+"""Least ratio between the ends of a scale of colours, so that round-off makes no pattern."""
 
 
 @figure("there is none, something else is among them, or the number of labels or axes is wrong")
@@ -345,5 +345,5 @@ def fields(
         )
     maps[0].set_ylabel("up (°)")
     if own:
-        base.whole(maps[0]).colorbar(picture, ax=maps, shrink=0.8, label="least error of the range (%)")
+        base.root_figure(maps[0]).colorbar(picture, ax=maps, shrink=0.8, label="least error of the range (%)")
     return maps

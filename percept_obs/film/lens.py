@@ -12,25 +12,25 @@ from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
 
 FEWEST_CORNERS = 8
-"""Corners of the board that a picture shows at least, for a pose."""
+"""Fewest corners of the board in a picture from which a pose is found."""
 
-ALIKE = 1.5
-"""Ratio of two poses' errors up to which either may be true."""
+LARGEST_AMBIGUOUS_RATIO = 1.5
+"""Ratio of two poses' errors up to which either may be true, so that the pose before decides."""
 
-UNSURE = 0.01
-"""Standard deviation of the principal point, over the size of the picture, from which on it is taken as the middle."""
+MOST_CENTRE_SPREAD = 0.01
+"""Largest standard deviation of a fitted principal point, over the picture's longer side; else it is the middle."""
 
-UNSURE_BEND = 0.02
-"""Standard deviation of what k2 changes in the corner of the picture, relative, from which on there is no k2."""
+MOST_BEND_SPREAD = 0.02
+"""Largest standard deviation of k2 r^4 in the picture's corner, r over the focal length; else k2 is 0."""
 
-FOLDED = 0.1
-"""Least slope of a lens up to the corner of the picture; below it no direction may be seen there."""
+LEAST_SLOPE = 0.1
+"""Least slope of the distorted radius over the undistorted one, up to the corner; at 0 a lens folds the picture."""
 
 FAR, TRIMS = 5.0, 3
 """Medians of the corners' errors beyond which one is left out, and how often the lens is found."""
 
 MOST_VIEWS = 40
-"""Pictures from which the lens is found, as different as there are."""
+"""Largest number of pictures from which the lens is found; the most different ones are taken."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +70,7 @@ def find_lens(corners: Array, places: Array, size: tuple[int, int]) -> Lens:
             flags = cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_ASPECT_RATIO | plain | more
             matrix, lens, spread, off = _calibrated(pixels, places, size, start, flags)
             corner = float(np.hypot(*size)) / 2 / matrix[1, 1]
-            told = spread[2:4].max() < UNSURE * max(size) and spread[5] * corner**4 < UNSURE_BEND
+            told = spread[2:4].max() < MOST_CENTRE_SPREAD * max(size) and spread[5] * corner**4 < MOST_BEND_SPREAD
             if told and reaches(lens[:2], corner):
                 break
         pixels = np.where((off < FAR * np.nanmedian(off))[..., None], pixels, np.nan)
@@ -80,7 +80,7 @@ def find_lens(corners: Array, places: Array, size: tuple[int, int]) -> Lens:
 
 
 def reaches(lens: Array, corner: float) -> bool:
-    """Return True if a lens k1, k2 maps directions up to a distorted radius, both over the focal length.
+    """Return True if a lens k1, k2 maps some direction to the distorted radius `corner` without folding the picture.
 
     A direction at the radius r is seen at r (1 + k1 r^2 + k2 r^4), and this must still grow there.
     """
@@ -88,7 +88,7 @@ def reaches(lens: Array, corner: float) -> bool:
     radius = np.linspace(0, 4 * corner, 1000)
     seen, slope = radius * (1 + k1 * radius**2 + k2 * radius**4), 1 + 3 * k1 * radius**2 + 5 * k2 * radius**4
     beyond = np.flatnonzero(seen >= corner)
-    return bool(len(beyond) and slope[: beyond[0] + 1].min() > FOLDED)
+    return bool(len(beyond) and slope[: beyond[0] + 1].min() > LEAST_SLOPE)
 
 
 def _calibrated(
@@ -163,7 +163,7 @@ def _likely(turns: Any, shifts: Any, errors: Any, before: Array) -> tuple[Any, A
     from scipy.spatial.transform import Rotation
 
     best = 0
-    if len(turns) > 1 and len(before) and errors[1] < ALIKE * errors[0]:
+    if len(turns) > 1 and len(before) and errors[1] < LARGEST_AMBIGUOUS_RATIO * errors[0]:
         found = Rotation.from_rotvec(np.reshape(turns, (-1, 3))).inv().as_matrix()
         best = int(np.linalg.norm(found - before, axis=(1, 2)).argmin())
     return turns[best], shifts[best]

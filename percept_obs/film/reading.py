@@ -26,7 +26,7 @@ from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked
 
 LOOKED_AT = 8
-"""Pictures in which other boards are looked for, where this one is not seen."""
+"""Number of pictures in which other boards are looked for, if this one is not seen."""
 
 SHORTEST_FILM = 1.5
 """Seconds that a film lasts at least."""
@@ -37,7 +37,7 @@ GAP = 0.3
 JUMP, FASTEST = 20.0, 5.0
 """Median steps, and metres a second, beyond which the camera cannot have moved: the film was cut there."""
 
-ALIKE = 1.0
+CORRELATION_TIME = 1.0
 """Seconds in which errors of corners and poses stay alike, for they come of blur, compression and the lens.
 
 So the samples in it count as one: the variance that a recording has is that of white noise as bad as these errors.
@@ -158,7 +158,7 @@ def _noise(recording: Recording, seen: Seen | None) -> float:
         spread = np.median(np.diagonal(seen.covariance, axis1=1, axis2=2), axis=0)
         depth = float(np.median(recording.distances[TRIANGULATION]))
         variance += float(spread[:3].mean() + spread[3:].mean() / depth**2)
-    return variance * max(1.0, ALIKE / float(np.median(recording.intervals)))
+    return variance * max(1.0, CORRELATION_TIME / float(np.median(recording.intervals)))
 
 
 def _doubt(faults: Faults | None) -> str:

@@ -10,7 +10,7 @@ from percept_obs.compile import Array
 from percept_obs.film.board import Board
 
 SHARE = 0.75
-"""Share of the edges that are narrower than the width of a picture's edges, since motion blurs those across it only."""
+"""Quantile of the edges' widths that stands for all: motion blurs the edges across it only, which are the widest."""
 
 REACH = 0.9
 """Share of the white between square and marker in which the grey across an edge is looked at."""

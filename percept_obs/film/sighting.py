@@ -24,21 +24,21 @@ WIDEST = 1280
 """Pixels of the longer side in which corners are looked for; larger pictures are made smaller."""
 
 MOST = 60
-"""Corners off the board that are followed at once."""
+"""Largest number of corners off the board that are followed at once."""
 
 SHORTEST_TRACK = 1.0
 """Seconds that a track lasts at least."""
 
-OFTEN = 5
+SEARCH_EVERY = 5
 """Pictures from one search for new corners to the next."""
 
-APART = 24
+LEAST_SPACING = 24
 """Pixels between two corners when they are found."""
 
 MARGIN = 1.7
 """Size of the area around the board where no others are looked for, over that of its inner corners."""
 
-BACK = 0.3
+LARGEST_MISS = 0.3
 """Pixels by which a corner may miss its place when it is followed forward and back."""
 
 SMALL, EVERY, MOST_SMALL = 640, 0.1, 240
@@ -145,7 +145,7 @@ def _look(video: Video, board: Board) -> Sighting:
             live = [track for track, there in zip(live, found, strict=True) if there]
             for track, place in zip(live, places[found], strict=True):
                 track.pixels.append(place)
-        if k % OFTEN == 0 and len(live) < MOST:
+        if k % SEARCH_EVERY == 0 and len(live) < MOST:
             live += [_Track(k, [pixel]) for pixel in _new(picture, corners[-1], [track.pixels[-1] for track in live])]
         before = picture
     lasting += [track for track in live if track.seconds(time) >= SHORTEST_TRACK]
@@ -174,7 +174,7 @@ def _followed(before: Any, now: Any, pixels: Array) -> tuple[Any, Array]:
     there, good, _ = cv2.calcOpticalFlowPyrLK(before, now, start, None, **options)
     back, well, _ = cv2.calcOpticalFlowPyrLK(now, before, there, None, **options)
     inside = ((there > 10) & (there < np.array(now.shape[::-1]) - 10)).all(axis=1)
-    return (good & well).ravel().astype(bool) & (np.linalg.norm(back - start, axis=1) < BACK) & inside, there
+    return (good & well).ravel().astype(bool) & (np.linalg.norm(back - start, axis=1) < LARGEST_MISS) & inside, there
 
 
 def _new(picture: Any, corners: Array, followed: list[Any]) -> Any:
@@ -183,10 +183,10 @@ def _new(picture: Any, corners: Array, followed: list[Any]) -> Any:
 
     free = np.full(picture.shape, 255, np.uint8)
     for u, v in followed:
-        cv2.circle(free, (round(float(u)), round(float(v))), APART, 0, -1)
+        cv2.circle(free, (round(float(u)), round(float(v))), LEAST_SPACING, 0, -1)
     seen = corners[np.isfinite(corners).all(axis=1)]
     if len(seen) >= 3:
         around = seen.mean(axis=0) + MARGIN * (seen - seen.mean(axis=0))
         cv2.fillConvexPoly(free, cv2.convexHull(around.round().astype(np.int32)), 0)
-    found = cv2.goodFeaturesToTrack(picture, MOST - len(followed), 0.02, APART, mask=free)
+    found = cv2.goodFeaturesToTrack(picture, MOST - len(followed), 0.02, LEAST_SPACING, mask=free)
     return np.empty((0, 2)) if found is None else found[:, 0]

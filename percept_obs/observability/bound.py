@@ -114,7 +114,7 @@ class Bound:
         return self.deviation[:, -1] / self.recording.view.inverse(self.recording.truth)
 
     def kept(self, sample: int = -1) -> tuple[Array, Array]:
-        """Standard deviations of hidden directions at the start after a sample, as shares of those before any.
+        """Return how far the samples up to one narrow the hidden directions at the start: deviations after over before.
 
         Parameters
         ----------
@@ -237,6 +237,7 @@ def cramer_rao(
 def _information(along: Linearised, noise: Array, used: Flags) -> Array:
     """Fisher information about the start, gathered up to each sample, shape (K, n, n)."""
     n, (count, m) = along.transitions.shape[-1], used.shape
+    # the information is about the start, so each sample is referred to it by the transition since then
     since = np.stack([*accumulate(along.transitions, lambda Phi, each: each @ Phi, initial=np.eye(n))])
     # a lost sample has no weight: its row and its column are taken out before the covariance is inverted
     both = used[:, :, None] & used[:, None]
@@ -256,6 +257,7 @@ def _covariances(along: Linearised, start: Array, noise: Array, used: Flags) -> 
             R, rows = noise[min(k, len(noise) - 1)][np.ix_(seen, seen)], along.measured[seen]
             shared = P[:, rows]
             P = P - shared @ np.linalg.solve(shared[rows] + R, shared.T)
+        # rounding would make P asymmetric, and in time indefinite
         P = (P + P.T) / 2
         found[k] = P
     return found

@@ -179,7 +179,9 @@ def window_integrals(time: Array, S: Array, Phi: Array, window: float) -> tuple[
     S, shape (K, n, n), is the information of each sample, and Phi, shape (K - 1, n, n), the transition to the next one.
     """
     h = np.diff(time)[:, None, None]
+    # trapezoidal rule over one interval, with the end's information referred to its beginning
     G = h / 2 * (S[:-1] + _seen_through(Phi, S[1:]))
+    # the first sample at or behind the window's end; windows that reach beyond the last one are left out
     ends = np.searchsorted(time, time + window - slack_of(time))
     begins = np.flatnonzero(ends < len(time))
     reached, left, size = begins.copy(), ends[begins] - begins, 1

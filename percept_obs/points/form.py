@@ -193,6 +193,7 @@ class PointsForm:
         """The entries of [A, v] that are not 0; v is column n."""
         entries = [(i, j, e) for (i, j), e in sorted(self.motion.A.todok().items())]
         entries += [(i, self.states, e) for (i, _), e in sorted(self.motion.b.todok().items())]
+        # entries with the same expression, as in a rotation's blocks, are evaluated once
         distinct = tuple(dict.fromkeys(e for _, _, e in entries))
         place = {e: k for k, e in enumerate(distinct)}
         places = np.array([(i, j, place[e]) for i, j, e in entries], dtype=np.intp).reshape(-1, 3)

@@ -21,7 +21,7 @@ from percept_obs.system.signal import slack_of
 from percept_obs.validation import checked
 
 LARGEST_TABLE = 1e7
-"""Most entries of the transition matrices of all samples; of more samples, every so many are taken."""
+"""Largest number of entries of all transition matrices; with more samples only every second, third, ... is used."""
 
 PARTS = 40
 """Intervals into which a window is divided for the bound on the decay."""
@@ -273,6 +273,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         steps = transitions(form, at)[:, :-1, :-1]
         Phi = np.stack([*accumulate(steps, lambda Phi, step: step @ Phi, initial=np.eye(form.states))])
         rows = form.rows(images[inside])
+        # each instant weighted by the root of its share, so that sums of products are integrals
         shown = np.sqrt(shares)[:, None, None] * rows @ Phi
         weights = P.at(at)
         corrected = (
@@ -281,8 +282,10 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         # a correction at one instant is missing from all later images
         size = rows.shape[1]
         operator = np.concatenate(list(shown)) @ np.concatenate(list(corrected), axis=1)
+        # the kernel acts on later instants only; on its own one by half, as the trapezoidal rule has it
         later = np.kron(np.tri(len(at), k=-1) + np.eye(len(at)) / 2, np.ones((size, size)))
         G = np.einsum("tij,tik->jk", shown, shown)
+        # with P = L L^T, the largest s with G >= s P is the least eigenvalue of L^-1 G L^-T
         half = np.linalg.inv(np.linalg.cholesky(weights[0]))
         seen[k] = np.linalg.eigvalsh(half @ G @ half.T)[0]
         hidden = operator * later

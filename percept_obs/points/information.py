@@ -14,10 +14,10 @@ from percept_obs.recording import Recording
 from percept_obs.tracking.information import FINEST, ROUNDING, Fit
 
 LARGEST_TABLE = 4_000_000
-"""Most entries of the table of transitions; of more samples, every so many are taken."""
+"""Largest number of entries of the table of transitions; with more samples only every second, third, ... is used."""
 
 PASSES = 4
-"""Passes of least squares, each weighted by the distances that the one before found."""
+"""Number of passes of least squares, each weighted by the distances that the one before found."""
 
 
 def many_points(form: PointsForm, recording: Recording) -> Fit:
@@ -39,12 +39,14 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
             product = flat.T @ flat
             M, b = product[:-1, :-1], product[:-1, -1]
             values, vectors = np.linalg.eigh(M)
+            # directions that no image shows are left at 0; `_worst` says if a point depends on them
             determined = values > ROUNDING**2 * values[-1]
             x = -vectors[:, determined] @ ((vectors[:, determined].T @ b) / values[determined])
             depth = form.locate(back @ np.append(x, 1.0)) @ l
             seen = np.isfinite(outputs).all(axis=-1)
             if not (depth[seen] > 0).all():
                 break
+            # B C x is the error of an image times the distance, which is known only after a pass
             weight = 1 / np.where(seen, depth, 1.0)
         free = m * int(seen.sum()) - form.states
         residual = product[-1, -1] + 2 * x @ b + x @ M @ x

@@ -20,7 +20,7 @@ from percept_obs.points.block import PointBlock
 from percept_obs.points.form import PointsForm
 
 Law = tuple[bool, float, float, Array]
-"""True if P is computed; then the last three of P' = -A^T P - P A + information S - forgetting P + pull."""
+"""If P is computed, by P' = -A^T P - P A + information S - forgetting P + pull, and these three."""
 
 COUPLING, WEIGHTS, PLACES = numbers()
 
@@ -45,6 +45,7 @@ class Arrays(NamedTuple):
 def arrays(form: PointsForm, states: Indices, points: Indices) -> Arrays:
     """Some states and points of a form as arguments of the loop; the states' rates must not need others."""
     n = form.states
+    # place of each state among the chosen ones, -1 for the others; the last one is the column v
     place = np.full(n + 1, -1)
     place[states], place[n] = np.arange(len(states)), len(states)
     layout = form.layout
@@ -135,6 +136,7 @@ def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array,
         else:
             dx[i] += a * x[j]
             if computed:
+                # A_ij takes a times row i of P off column j, for -P A, and off row j, for -A^T P
                 combine(dP[:, j], dP[:, j], -a, P[i])
                 combine(dP[j], dP[j], -a, P[i])
     correction, anything = np.zeros(n), False
@@ -145,13 +147,16 @@ def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array,
         seen = True
         for j in range(m):
             inputs[j] = y[k, j]
+            # NaN, a point that is not seen, is not equal to itself
             seen = seen and y[k, j] == y[k, j]
         if not seen:
             continue
         anything = True
+        # the estimated point C_k x, from the entries of C_k that are not 0
         inputs[m : m + 3] = 0.0
         for e in range(begins[k], begins[k + 1]):
             inputs[m + axes[e]] += entries[e] * x[states[e]]
+        # values has the correction B^T (y l xi - N xi) and then S = B^T B, row by row
         point(inputs, values)
         for e in range(begins[k], begins[k + 1]):
             correction[states[e]] += entries[e] * values[axes[e]]
@@ -159,6 +164,7 @@ def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array,
                 S = values[3 + 3 * axes[e] + axes[f]]
                 dP[states[e], states[f]] += information * entries[e] * entries[f] * S
     if anything and computed:
+        # a computed P changes at each stage, so that a system is solved; a given one comes inverted
         combine(dx, dx, 1.0, solve(P, correction))
     elif anything:
         for i in range(n):

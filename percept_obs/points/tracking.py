@@ -132,6 +132,7 @@ def _independent(form: PointsForm, matrix: LyapunovMatrix) -> list[tuple[Indices
     within = layout.columns < n
     coupled[layout.rows[within], layout.columns[within]] = True
     used = (form.blocks != 0).any(axis=1)
+    # the images of a point couple all states that its C_k uses
     coupled |= used.T @ used
     count, label = connected_components(coupled, directed=False)
     owner = label[used.argmax(axis=1)]
@@ -183,6 +184,7 @@ def _begin(
     new = task.began[sample, points]
     others = recording.seen[:sample][recent][:, points].any(axis=0) & ~new
     C = form.blocks[points][:, :, states]
+    # states that a point in sight uses are known already, and are left as they are
     free = (C[new] != 0).any(axis=(0, 1)) & ~(C[others] != 0).any(axis=(0, 1))
     if not free.any():
         return x, P
@@ -190,7 +192,9 @@ def _begin(
     goal = form.surface.locate(np.column_stack([images, np.full(len(images), 1 / sight.depth)]))
     rows = C[new].reshape(-1, len(states))
     x, P = x.copy(), P.copy()
+    # several states may make up one point, or several points share one: least squares, with the least norm
     x[free] = np.linalg.lstsq(rows[:, free], goal.ravel() - rows[:, ~free] @ x[~free], rcond=None)[0]
+    # what P says of states that begin anew, and of their relation to others, is forgotten
     P[free] = P[:, free] = 0
     P[np.ix_(free, free)] = task.observer.P.start[np.ix_(states[free], states[free])]
     return x, P

@@ -65,6 +65,7 @@ def constant_path(A: Array, b: Array, start: Array, times: Array) -> Array:
     states = np.append(start, 1.0)[None]
     with np.errstate(over="ignore", invalid="ignore"):
         across = exponential(whole * length)
+        # each pass doubles both the states known and the time that the exponential leads over
         while len(states) <= pieces:
             states = np.concatenate([states, states @ across.T])
             across = across @ across

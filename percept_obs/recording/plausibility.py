@@ -11,7 +11,7 @@ from percept_obs.system.view import View
 from percept_obs.validation import warn
 
 LARGEST_USUAL = 20.0
-"""Absolute image coordinate, 3 degrees before the image plane ends, beyond which half of the samples hardly lie."""
+"""Image coordinate 87 degrees from the optical axis: if half of the samples lie beyond, they are probably pixels."""
 
 LONG_GAP = 10
 """Times the usual interval of a sampled motion above which an interval is a gap."""

@@ -99,7 +99,7 @@ class PoseErrors:
 
 @dataclass(frozen=True)
 class VirtualLandmark:
-    """Miss of landmarks at rest: distances are found 1 / (1 - bias) times as long, with the bias's deviation."""
+    """How a motion misses landmarks at rest: distances come out 1 / (1 - bias) times as long; the bias's deviation."""
 
     bias: float
     deviation: float
@@ -122,7 +122,7 @@ class VirtualLandmark:
 
 
 def _missed(turns: Array, position: Array, maps: Array, depth: float) -> tuple[Array, Array] | None:
-    """Return the derivative of a landmark's images by ln Z, and by how much they are missed, both without its start."""
+    """Return the derivative of a landmark's images by ln Z and their misses, both without what its start explains."""
     middle = len(turns) // 2
     place = position[middle] + depth * turns[middle, :, 2]
     seen = np.einsum("kji,kj->ki", turns, place - position)  # R^T (place - p)
@@ -137,5 +137,6 @@ def _missed(turns: Array, position: Array, maps: Array, depth: float) -> tuple[A
     slopes = ((changes[:, :2] - image[:, :, None] * changes[:, 2:]) / moved[:, 2, None, None]).reshape(-1, 3)
     missed = (seen[:, :2] / seen[:, 2:] - image).ravel()
     both = np.column_stack([slopes[:, 0], missed])
+    # the start's image is fitted as well, for the first pose's error shifts it, which is no fault of the speeds
     both -= slopes[:, 1:] @ np.linalg.lstsq(slopes[:, 1:], both, rcond=None)[0]
     return both[:, 0], both[:, 1]

@@ -27,10 +27,10 @@ LONGEST_ROW = 1 / 120
 """Seconds between two rows of a path at most: between its rows a motion is linear, which loses its fast part."""
 
 NEAREST = 1e-3
-"""Mean steps to the next pose, below which both have one place in the smoother: nearer ones tell no velocity."""
+"""Least time between poses, in mean steps: of nearer ones the first is smoothed only, for they tell no velocity."""
 
 REPEATED = 0.25
-"""Share of poses that are the one before them again, from which on somebody has repeated them."""
+"""Largest share of poses equal to the one before; of more it is said that they were repeated, not measured."""
 
 
 @checked
@@ -196,7 +196,7 @@ class Poses:
         return self.path().motion
 
     def judge(self, motion: Motion) -> Motion:
-        """Return a motion with other velocities of this camera, judged by these poses wherever it is used.
+        """Return a motion with the errors of these poses, by which its velocities are tested wherever it is used.
 
         Examples
         --------

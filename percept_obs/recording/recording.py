@@ -275,7 +275,7 @@ class Recording:
 
     @cached_property
     def effective_variance(self) -> float | None:
-        """Variance of white noise as bad as that of the images and of the poses behind the motion together.
+        """Variance of white noise that harms an estimate as much as the errors of images and poses together do.
 
         It is what filters, bounds, trust and diagnosis take; None where the `noise_variance` is not known.  All points
         of a camera share the errors of its poses, so that a mean over points is no more certain of them.

@@ -42,7 +42,7 @@ MOST_AT_ONCE = 2_000_000
 """Numbers of samples and truths that are kept at once, 16 MB."""
 
 SAFETY_FACTOR = 4.0
-"""Safety factor against crossing zero between samples: distance over its largest change from sample to sample."""
+"""Least ratio of a distance to its largest change between samples at which it surely stays positive between them."""
 
 Columns = Mapping[str, Array]
 """Values of what varies, one for each of L runs, by name; always with "seed"."""

@@ -88,11 +88,11 @@ class FunctionObserver:
     """None, as tables ask for them."""
 
     def refusal(self, form: PartitionedSystem) -> str:
-        """Reason against a form in tables of families; none here, for `track` says it of each recording."""
+        """Return no reason against any form: whether it fits is found by `track`, with a recording."""
         return ""
 
     def __call__(self, form: PartitionedSystem) -> FunctionObserver:
-        """Itself, where tables make observers of a form."""
+        """Return the observer itself, so that tables can call it like a family."""
         return self
 
 

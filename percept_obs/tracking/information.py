@@ -28,13 +28,13 @@ FEWEST = 20
 """Samples in the shortest window."""
 
 LONGER = 3
-"""Windows twice as long each, by which the known motion is tested once one is long enough."""
+"""Number of longer windows, each twice the last, whose estimates must agree with that of the one that suffices."""
 
 SURELY = 3.5
-"""Standard deviations by which an autocorrelation must differ from that of white noise to be one."""
+"""Standard deviations of white noise's autocorrelation beyond which residuals count as correlated."""
 
 CORRELATED = 0.5
-"""Seconds up to which errors of samples are asked for their correlation."""
+"""Longest lag in seconds at which the correlation of residuals is summed."""
 
 FINEST = 1e-6
 """Noise of the best measurement, relative to the output's size: no camera is better, and rounding is not far below."""
@@ -181,14 +181,14 @@ def _backwards(form: PartitionedSystem, recording: Recording, first: int) -> Cal
 
 
 def _inflation(residuals: Array, time: Array) -> float:
-    """Factor by which a standard deviation grows where residuals are surely correlated, 0 where a sample was lost."""
+    """Factor by which correlated residuals, 0 where lost, enlarge a standard deviation; 1 if it is not sure."""
     products = residuals[1:] * residuals[:-1]
     surely = SURELY * float((residuals**2).sum()) < float(products.sum()) * math.sqrt(np.count_nonzero(products))
     return math.sqrt(max(1.0, correlation(residuals, time))) if surely else 1.0
 
 
 def correlation(residuals: Array, time: Array) -> float:
-    """Return how many times their variance white noise needs, to be as bad as residuals, shape (K, m), 0 if lost.
+    """Return the variance of white noise that harms an estimate as much as residuals (K, m), 0 if lost, over theirs.
 
     Covariances of residuals less than `CORRELATED` seconds apart count, the farther ones less (Newey and West, A
     simple, positive semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix, Econometrica

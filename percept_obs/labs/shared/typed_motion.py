@@ -113,7 +113,7 @@ def _branches(text: str) -> str:
 
 
 def _step(*values: sp.Expr) -> sp.Expr:
-    """0 before, and 1 from where a number is no longer negative."""
+    """Return an expression that is 0 where a number is negative, and 1 elsewhere."""
     if len(values) != 1 or hasattr(values[0], "shape"):
         raise ValueError("step is of one number, such as step(t - 2)")
     return sp.Piecewise((1, values[0] >= 0), (0, True))
