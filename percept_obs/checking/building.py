@@ -17,6 +17,7 @@ from percept_obs.checking.tokens import FUNCTIONS
 from percept_obs.checking.words import Words
 
 LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER, LONGEST_PRODUCT = 20, 60, 40, 8
+"""Largest exponent, degree of a power, digits of a power of an integer, and letters of matrices in a product."""
 
 _RELATIONS = {
     sp.StrictLessThan: ("<", r"\lt"),
@@ -158,7 +159,7 @@ class Builder:
         self.refuse("the sizes of these matrices do not fit", part)
 
     def _unclear(self, over: Tree, part: Any) -> None:
-        """Refuse a/b c, but not 1/2 (a + b): behind a number and a blank, a bracket stands beside the fraction."""
+        """Refuse a/b c, where c may belong below or beside the fraction, but not 1/2 (a + b), where a blank tells."""
         divisor = over.children[0]
         end = divisor.end_pos if isinstance(divisor, Token) else divisor.meta.end_pos
         start = part.start_pos if isinstance(part, Token) else part.meta.start_pos

@@ -89,6 +89,7 @@ def _reduced(polynomial: Any, number: int, square: Any) -> Any:
     """Return a polynomial in which a polynomial replaces the square of a letter, given by its number."""
     found = polynomial.ring.zero
     for powers, coefficient in polynomial.terms():
+        # x^5 becomes x (x^2)^2, with the square put in
         rest = (*powers[:number], powers[number] % 2, *powers[number + 1 :])
         found += polynomial.ring({rest: coefficient}) * square ** (powers[number] // 2)
     return found

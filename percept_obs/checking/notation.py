@@ -24,6 +24,7 @@ from percept_obs.checking.tokens import (
 )
 
 LONGEST, LONGEST_NUMBER, LONGEST_WORD, DEEPEST, MOST_INTEGRALS = 9000, 15, 60, 40, 20
+"""Most characters of a text, digits of a number, letters of a word, brackets in brackets, and integrals."""
 _TOO_LONG = {
     r"'{9}": "more than 8 primes stand here",
     rf"[A-Za-z0-9_\u0302-\u0307]{{{4 * LONGEST_WORD}}}": f"a word has more than {LONGEST_WORD} letters",

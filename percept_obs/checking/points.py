@@ -88,14 +88,14 @@ class Point:
         return self._opaque(e) if self.opaque and e.args else self._special(e)
 
     def _opaque(self, e: sp.Basic) -> Any:
-        """Return a random value for a function with kinks, an integral, ...; arguments by their values."""
+        """Return a random value for a function with kinks, an integral, ..., the same one for equal arguments."""
         if isinstance(e, sp.Abs | sp.sign):
             _, sign = _random(self.seed, f"sign {self._name(e.args[0])}")  # its square is 1, as that of the true one
             return sign * self(e.args[0]) if isinstance(e, sp.Abs) else sign
         return self._drawn(f"{e.func.__name__} {[self._name(part) for part in e.args]}")
 
     def _name(self, e: sp.Basic) -> str:
-        """Return the same text for equal arguments."""
+        """Return a text that is equal for equal arguments of a function."""
         if not e.args:
             return key(str(e))
         if isinstance(e, Relational | sp.Tuple):

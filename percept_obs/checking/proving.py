@@ -84,6 +84,7 @@ def _on_all_branches(one: sp.Basic, other: sp.Basic) -> bool | None:
         found.append(apart == 0)
         # how many signs there are is known only once the formulas are evaluated
         branches = max(branches, at.count)
+        # signs may depend on each other, so that some branches do not exist: equal on some only proves nothing
         if branches > BRANCHES or len(set(found)) > 1:
             return None
     return True if found[0] else False if complete else None
@@ -99,6 +100,7 @@ def ratio(one: sp.Basic, other: sp.Basic) -> sp.Rational | None:
 
 def dimension(*rows: sp.Basic) -> int:
     """Return how many of these polynomials are linearly independent."""
+    # dependent at one more random point than there are rows: dependent everywhere
     field, points = sp.GF(_prime()), [_SecretPoint(0, {}) for _ in range(len(rows) + 1)]
     values = [[field(at.value(row)) for row in rows] for at in points]
     return int(DomainMatrix(values, (len(values), len(rows)), field).rank())
@@ -222,6 +224,7 @@ class _SecretPoint:
             return known
         product = 1
         for factor, power in powers(e):
+            # an even power is never negative
             if power % 2:
                 product *= _known_sign(factor) or self.kink(self.value(factor))
         return product
@@ -247,6 +250,7 @@ class _SecretPoint:
         product, rest = 1, 1
         for factor, power in powers(e):
             number, half = self.value(factor), int(power) // 2
+            # sqrt(f^2) is |f|, not f
             size = self.sign(factor) * number if half else 1
             product = product * pow(size if half >= 0 else self.inverse(size), abs(half), self.p) % self.p
             if power % 2 and _known_sign(factor) == 1:

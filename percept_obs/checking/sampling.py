@@ -119,6 +119,7 @@ def places(*formulas: sp.Basic) -> Iterator[dict[str, float]]:
     for number in range(TRIALS):
         values: dict[str, float] = {}
         for letter in letters:
+            # every other place has ordinary values only, at which few formulas overflow
             draw = _chance.random() if number % 2 else 0
             if draw < 0.4:
                 value = _chance.uniform(-3, 3)

@@ -92,6 +92,7 @@ class Search:
                     named = replace(slip, path=(*start, *slip.path), term=slip.term if slip.path else term)
                     found.append((after - before, named))
         whole = self.line.formula
+        # every term of the true formula may be missing, as it is written or multiplied out
         expanded = sp.expand(whole) if small(whole) else whole
         for term in dict.fromkeys((*sp.Add.make_args(expanded), *sp.Add.make_args(whole))):
             if (added := self.values(term)) is not None:
@@ -215,6 +216,7 @@ class Search:
             yield Slip("sign", mine, true, path, mine, changed)
         elif quotient.is_Symbol:
             yield Slip("left-out factor", sp.S.One, quotient, path, mine, changed)
+        # the part has a term too many and one too few: perhaps one term with a wrong letter
         if len(lost) == 2:
             known = {t.as_coeff_Mul()[1] for t in sp.Add.make_args(mine)}
             lacking, extra = sorted(lost, key=lambda t: t.as_coeff_Mul()[1] in known)

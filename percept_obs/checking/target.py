@@ -135,7 +135,7 @@ class Target:
         return tuple(convention for convention in _conventions() if set(convention.changes) <= letters)
 
     def asked(self, text: Text) -> Target:
-        """Return the target that a text means: of its names, or with a gain that is 0 by default; else itself."""
+        """Return the target that a text is about: that of its names, one with gains that are 0 by default, or this."""
         names = [line.name for line in text.lines if line.name in self.others]
         elsewhere = not any(line.name in self.rows for line in text.lines)
         if names and elsewhere:

@@ -115,7 +115,7 @@ class Words(Notation):
         return out
 
     def _applied(self, before: Sequence[Token], inner: Sequence[Token], first: dict[str, list[str]]) -> str:
-        """Return the letter that a letter with arguments stands for; empty if they are a factor."""
+        """Return the letter that x(t) or g(x1, xhat2) stands for, x or ghat; empty if the bracket is a factor."""
         letter = next((str(t) for t in reversed(before[-6:]) if t.type == "NAME" and t != "T"), "")
         text = "".join(map(str, inner))
         if re.fullmatch(r"ti\^?\{?\^?\{?[+-]\}?\}?", text):

@@ -106,5 +106,6 @@ def executed(text: str, **names: Any) -> Callable[..., Any]:
     """Python function that a text defines last; it may use `math` and the names that are passed."""
     namespace: dict[str, Any] = {"math": math} | names
     exec(compile(text, "<printed>", "exec"), namespace)
+    # helpers stand before the function that uses them, which so is the last one
     *_, function = (value for value in namespace.values() if isinstance(value, FunctionType))
     return function

@@ -38,7 +38,7 @@ EACH = len(INSTANTS) - 1
 """Rows of a table of known signals for each step: its instants but the last, which is the next step's first."""
 
 LONGEST_STEP = 0.01
-"""Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
+"""Longest step in seconds with which an observer is integrated, unless another one is asked for."""
 
 PLANT_STEP = 0.0025
 """Longest step, in seconds, with which the page integrates a motion that varies; a constant one it sums exactly."""

@@ -49,6 +49,7 @@ def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Cal
         exec(compile(text, place, "exec"), vars(module))
         *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
         inside = rounding == "batch"  # of the loop, for a call stops vector instructions
+        # the functions before the last one become machine code first, for it calls them
         for name in others:
             setattr(module, name, numba.njit(forceinline=inside, **options)(getattr(module, name)))
         found: Callable[..., Any] = numba.njit([signature], cache=kept, **options)(getattr(module, last))

@@ -65,6 +65,7 @@ class _Printer(PythonCodePrinter):
     def _print_Pow(self, expr: sp.Pow, **_: Any) -> str:
         base, exponent = expr.base, expr.exp
         factors = [self.parenthesize(base, PRECEDENCE["Pow"])] * int(abs(exponent))
+        # half powers are products times a root
         if not exponent.is_Integer:
             factors.append(f"{self.notation['math']}.sqrt({self._print(base)})")
             if len(factors) == 1:

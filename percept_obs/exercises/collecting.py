@@ -237,7 +237,7 @@ def _ids() -> dict[str, set[str]]:
 
 
 def blank(name: str) -> dict[str, Any]:
-    """Return the columns of a notebook that was not handed in."""
+    """Return a table's columns for a notebook that was not handed in."""
     columns: dict[str, Any] = {}
     for task in (task for task, *_ in programs(notebooks()[name]) if task):
         label = f"{name[:2]} {task}"

@@ -44,7 +44,7 @@ def linear(ax: Axes, required: Array, optional: Array, what: str, reach: float =
 
 
 def log(ax: Axes, values: Array, what: str, highest: float = np.inf, ticks: str = "") -> str:
-    """Make the axis logarithmic, and leave out spikes: towards zero at a change of sign, and before divergence."""
+    """Make the axis logarithmic; return a sentence on what it leaves out: spikes at changes of sign and divergence."""
     seen = describe.finite(values)
     seen = seen[seen > 0]
     low, high = np.percentile(seen, [3, 99.9], method="lower") if seen.size else (ROUND_OFF, 1.0)

@@ -59,7 +59,7 @@ def find_lens(corners: Array, places: Array, size: tuple[int, int]) -> Lens:
     """Return the lens that explains the corners, shape (K, n, 2), of places on a plane, shape (n, 3)."""
     import cv2
 
-    views = _different(corners)
+    views = _varied_views(corners)
     pixels = corners[views]
     start = np.array([[max(size), 0, (size[0] - 1) / 2], [0, max(size), (size[1] - 1) / 2], [0, 0, 1.0]])
     plain = cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST  # more is not told by a small board
@@ -111,7 +111,7 @@ def _calibrated(
     return matrix, lens.ravel(), spread.ravel(), off
 
 
-def _different(corners: Array) -> list[int]:
+def _varied_views(corners: Array) -> list[int]:
     """Return pictures with most of the corners that differ most from each other, at most `MOST_VIEWS`."""
     count = np.isfinite(corners).all(axis=2).sum(axis=1)
     rich = np.flatnonzero(count >= max(FEWEST_CORNERS, 0.7 * count.max()))
@@ -142,14 +142,14 @@ def find_poses(time: Array, corners: Array, places: Array, camera: PixelCamera) 
         seen = np.isfinite(corners[k]).all(axis=1)
         there, pixels = places[seen], corners[k][seen]
         found = cv2.solvePnPGeneric(there, pixels, matrix, lens, flags=cv2.SOLVEPNP_IPPE)
-        turn, shift = cv2.solvePnPRefineLM(there, pixels, matrix, lens, *_likely(*found[1:], turns[-1:]))
+        turn, shift = cv2.solvePnPRefineLM(there, pixels, matrix, lens, *_likelier_pose(*found[1:], turns[-1:]))
         shown, slope = cv2.projectPoints(there, turn, shift, matrix, lens)
-        rotation = Rotation.from_rotvec(turn.ravel()).as_matrix()
+        from_board = Rotation.from_rotvec(turn.ravel()).as_matrix()
         moved = slope[:, 3:6].reshape(-1, 2, 3)
-        turned = np.cross((there @ rotation.T + shift.ravel())[:, None], moved)  # of the points about the camera
-        J = np.concatenate([turned, moved @ rotation], axis=2).reshape(-1, 6)  # the board moves as the camera does
-        turns = np.concatenate([turns, [rotation.T]])
-        positions.append(-rotation.T @ shift.ravel())
+        turned = np.cross((there @ from_board.T + shift.ravel())[:, None], moved)  # of points about the camera
+        J = np.concatenate([turned, moved @ from_board], axis=2).reshape(-1, 6)  # the board moves as the camera does
+        turns = np.concatenate([turns, [from_board.T]])
+        positions.append(-from_board.T @ shift.ravel())
         normals.append(J.T @ J)
         left.append((shown[:, 0] - pixels).ravel())
     rest = np.concatenate(left)
@@ -158,12 +158,12 @@ def find_poses(time: Array, corners: Array, places: Array, camera: PixelCamera) 
     return Seen(index, poses, sigma**2 * np.linalg.inv(normals), float(np.sqrt(np.mean(rest**2))))
 
 
-def _likely(turns: Any, shifts: Any, errors: Any, before: Array) -> tuple[Any, Any]:
+def _likelier_pose(turns: Any, shifts: Any, errors: Any, before: Array) -> tuple[Any, Any]:
     """Return the pose with the least error, or, of two that explain a small plane alike, the one nearer to before."""
     from scipy.spatial.transform import Rotation
 
     best = 0
     if len(turns) > 1 and len(before) and errors[1] < LARGEST_AMBIGUOUS_RATIO * errors[0]:
-        found = Rotation.from_rotvec(np.reshape(turns, (-1, 3))).inv().as_matrix()
-        best = int(np.linalg.norm(found - before, axis=(1, 2)).argmin())
+        board_from_camera = Rotation.from_rotvec(np.reshape(turns, (-1, 3))).inv().as_matrix()
+        best = int(np.linalg.norm(board_from_camera - before, axis=(1, 2)).argmin())
     return turns[best], shifts[best]

@@ -168,7 +168,7 @@ def _doubt(faults: Faults | None) -> str:
 
 
 def _at_the_middle(sighting: Sighting, readout: Array, video: Video) -> Array:
-    """Return the pixels of tracks at the times of their pictures, from those when their row or column was read."""
+    """Return where the points of tracks were at the times of their pictures, not when their rows were read."""
     moved = [np.empty((0, 2))]
     for first, pixels in sighting.tracks:
         speed = np.gradient(pixels, sighting.time[first : first + len(pixels)], axis=0)

@@ -222,6 +222,7 @@ def cramer_rao(
             "the first sample was lost, so that the measured outputs need a prior; give one, or cut it off"
         )
     used = along.seen.copy()
+    # the first sample is the prior of the outputs, and must not count twice
     used[0] &= not from_sample
     with np.errstate(all="ignore"):
         found = [_covariances(along, start, noise, each) for each in (used, np.zeros_like(used))]

@@ -29,7 +29,7 @@ STEP = 0.05
 """Longest step of perturbed runs in seconds; its error is small against what such a perturbation leaves."""
 
 MOST_WINDOWS = 24
-"""Windows of the empirical Gramian."""
+"""Largest number of windows of the empirical Gramian."""
 
 
 class ErrorGramian(Windows):

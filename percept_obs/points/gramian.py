@@ -24,7 +24,7 @@ LARGEST_TABLE = 1e7
 """Largest number of entries of all transition matrices; with more samples only every second, third, ... is used."""
 
 PARTS = 40
-"""Intervals into which a window is divided for the bound on the decay."""
+"""Number of intervals into which a window is divided for the bound on the decay."""
 
 VERDICTS = MappingProxyType(
     {
@@ -260,9 +260,11 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         raise ValueError("the recording has no truth, so that the true images are not known")
     check_window(recording, window, holds_samples=True)
     time, images, slack = recording.time, _true_images(recording), slack_of(recording.time)
+    # (15) is tested at as many instants as a window has intervals
     every = slice(None, None, max(1, len(time) // PARTS))
     if P.computed or not conditions(observer, time[every], images[every], P.at(time[every])).printed_holds:
         raise ValueError("the bound rests on (15): give a constant or scheduled P with A^T P + P A + P' <= 0")
+    # windows side by side, so that their contractions multiply
     begins = time[0] + window * np.arange(int((time[-1] - time[0] + slack) / window))
     seen, feedback = np.empty(len(begins)), np.empty(len(begins))
     for k, begin in enumerate(begins):

@@ -91,6 +91,7 @@ def _follow_points(
     began = np.zeros_like(recording.seen)
     for sighting in recording.sightings(sight.absence) if sight else ():
         began[sighting.first, sighting.point] = True
+    # P at every sample would fill the memory; the conditions need it now and then
     kept = np.unique(np.linspace(0, len(time) - 1, KEPT).round().astype(int))
     images = grid.held(filled=False)
     images = np.broadcast_to(images, (len(images), EACH + 1, *images.shape[2:]))
@@ -180,6 +181,7 @@ def _begin(
 ) -> tuple[Array, Array]:
     """Estimate and P with the points that begin at a sample put on their rays."""
     recording, form = task.grid.recording, task.observer.form
+    # a point that was out of sight for longer than the absence counts as never seen
     recent = recording.time[:sample] >= recording.time[sample] - sight.absence
     new = task.began[sample, points]
     others = recording.seen[:sample][recent][:, points].any(axis=0) & ~new

@@ -126,6 +126,7 @@ def _missed(turns: Array, position: Array, maps: Array, depth: float) -> tuple[A
     middle = len(turns) // 2
     place = position[middle] + depth * turns[middle, :, 2]
     seen = np.einsum("kji,kj->ki", turns, place - position)  # R^T (place - p)
+    # maps from the first pose of the window, where the landmark's place is taken from the poses
     onward = maps @ np.linalg.inv(maps[0])
     moved = seen[0] @ onward[:, :3, :3].swapaxes(1, 2) + onward[:, :3, 3]
     there = (seen[:, 2] > NEAR * depth) & (moved[:, 2] > NEAR * depth)

@@ -208,7 +208,7 @@ class Recording:
 
     @cached_property
     def scale(self) -> Array:
-        """Factors of the coordinates, shape (n,), with which their lengths are measured by the unit."""
+        """Factors that turn the coordinates in metres into those in the recording's unit of length, shape (n,)."""
         return readonly(self.unit ** -np.array(self.view.lengths[: len(self.view.coordinates)], dtype=float))
 
     @cached_property

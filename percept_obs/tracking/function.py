@@ -133,7 +133,7 @@ def _follow_by_function(
     claims = None if observer.covariance is None else np.full((len(recording.time), n, n), np.nan)
 
     def asked(part: str, shape: tuple[int, ...] | None, *arguments: Any) -> Array:
-        """Result of one of the functions; NaN where its numbers give out."""
+        """Return the result of one of the observer's functions; NaN if it divides by zero or a matrix is singular."""
         try:
             with np.errstate(all="ignore"):
                 found = np.asarray(getattr(observer, part)(*arguments), dtype=float)

@@ -132,9 +132,11 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         plain = np.zeros(size + len(doubts))
         plain[places] = [column[np.isfinite(column)][-1] for column in samples.T]
         begins = [plain, *(np.append(guess * scale, plain[size:]) for guess in guesses)]
+        # the sum of squares may have several minima: begin where it is least
         start = min(begins, key=lambda x: float(((samples - images(x))[seen] ** 2).sum()))
         finest = max(FINEST * float(np.abs(samples[seen]).max()), math.sqrt(known_noise)) or FINEST
         noise = np.ones(measured)
+        # how noisy each output is shows only once a first fit has been made
         for _ in range(2):
 
             def residuals(x: Array, noise: Array = noise) -> Array:
@@ -159,7 +161,7 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
 
 
 def _backwards(form: PartitionedSystem, recording: Recording, first: int) -> Callable[[Array], Array]:
-    """The measured outputs at the samples from one on, as a function of the coordinates at the end."""
+    """Return a function from the coordinates at the end to the measured outputs at the samples from `first` on."""
     from scipy.interpolate import CubicSpline
 
     plant = Equations((*form.x1, *form.x2), tuple(form.rate), (), form.parameters)
@@ -203,6 +205,7 @@ def correlation(residuals: Array, time: Array) -> float:
 def _deviation(jacobian: Array, k: int) -> float:
     """Standard deviation of one unknown, when all others are unknown as well; infinite if nothing depends on it."""
     others = np.delete(jacobian, k, axis=1)
+    # the part of a column that no change of the other unknowns can explain
     alone = jacobian[:, k] - others @ np.linalg.lstsq(others, jacobian[:, k], rcond=None)[0]
     size = float(np.linalg.norm(alone))
     return 1 / size if size > ROUNDING * float(np.linalg.norm(jacobian[:, k])) else math.inf

@@ -36,7 +36,7 @@ def excitation_in_words(form: PartitionedSystem, recording: Recording, window: f
 
 
 def _shown_in_words(form: PartitionedSystem, recording: Recording, window: float) -> str:
-    """Sentence on the coordinates that the outputs show, where the dynamics are counted as well."""
+    """Sentence on the coordinates that outputs and dynamics together show within a window."""
     shown = error_gramian(recording, form, window)
     counted = "With the dynamics counted, the outputs of"
     if shown.holds:

@@ -20,6 +20,7 @@ from percept_obs.system.motion import TIME
 from percept_obs.validation import expression
 
 MOST = 400
+"""Largest number of characters of a motion over time."""
 LONGEST = 200.0
 """Seconds up to which the page knows where a motion over time jumps."""
 INSTANTS = 501
