@@ -220,6 +220,7 @@ class Notation:
                 opened += [token.type] if token.type in OPENING else []
                 out.append(token)
                 continue
+            # a bar closes if one is open and an operand stands before it, else it opens; \left and \right tell
             top = opened[-1] if opened else ""
             ended = bool(out) and out[-1].type in _OPERAND_ENDS
             if token == "||" and top == "BAR" and ended:  # |a||b|
@@ -244,6 +245,7 @@ class Notation:
                 token = token.update(type="FUNCTION", value="sqrt")
             if token.type == "_FRACTION":
                 wanted = 2
+            # TeX takes one digit for each part of a fraction: \frac12 is 1/2
             elif wanted and token.type == "NUMBER" and token.isdigit() and len(token) <= wanted:
                 for digit in token:
                     out += [
@@ -275,6 +277,7 @@ class Notation:
             end = unit_end(tokens, partner, start)
             if end is None:
                 continue
+            # sin 2 y1 x may be sin(2 y1 x) or sin(2 y1) x
             if tokens[end].type in _OPERAND_STARTS:
                 told = (f"{token} of all that follows", f"{token} times what follows")
                 self.refuse(two_meanings(told, f"write brackets, {token}(...)"), tokens[end])

@@ -151,6 +151,7 @@ def _move_to_a_border(values: dict[str, float], border: sp.Expr) -> None:
     letter = _chance.choice(sorted(border.free_symbols, key=str))
     name = key(letter.name)
     try:
+        # three values on a line: the expression is linear in the letter, and its zero follows
         at = [Place(values | {name: x})(border) for x in (0.0, 1.0, 2.0)]
     except NoValue:
         return
@@ -184,6 +185,7 @@ def region(good: Sequence[Place], bad: Sequence[Place], *formulas: sp.Basic) -> 
     """Return a condition that holds at good places and fails at bad ones, |y1| < pi/2; empty if none is seen."""
     if len(good) < 5 or len(bad) < 5:
         return ""
+    # conditions are looked for in letters and in arguments of functions, the shortest first
     inner = {a for e in formulas for f in e.atoms(sp.Function, sp.Pow) for a in (*f.args, f) if isinstance(a, sp.Expr)}
     letters = {s for e in formulas for s in e.free_symbols}
     constants = {abs(n) for e in formulas for n in e.atoms(sp.Rational)} | {sp.S(n) for n in (0, 1, sp.pi / 2, sp.pi)}
@@ -194,6 +196,7 @@ def region(good: Sequence[Place], bad: Sequence[Place], *formulas: sp.Basic) -> 
                 continue
             for sign, relation in ((1, "<"), (-1, ">")):
                 low, high = max(sign * x for x in inside), min(sign * x for x in outside)
+                # a single usual number between good and bad places is the border; of several it is not known which
                 between = {c for c in (*constants, *(-c for c in constants)) if low <= sign * float(c) <= high}
                 if low <= high and len(between) == 1:
                     return f"{shown} {relation} {between.pop()}".replace("**", "^").replace("*", " ")

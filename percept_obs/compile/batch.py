@@ -48,6 +48,7 @@ def run_batch(loop: BatchLoop, batch: Batch, tolerance: float, late: int, langua
     the largest change of its distance between samples; and of each mean the sum and the number of values.
     """
     runs, columns = len(batch.start), len(COLUMNS) + 2 * len(loop.statistics.means)
+    # compiled code has a fixed width; numpy takes all runs at once
     width = BATCH if language == "numba" else max(runs, 1)
     filled = -(-runs // width) * width
     rows = np.minimum(np.arange(filled), runs - 1)  # the last run stands in for those that fill up the last batch

@@ -66,6 +66,7 @@ def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
     counts = np.where(intervals > 0, np.maximum(1, np.ceil(intervals / longest - STEP_ROUNDING)), 0).astype(int)
     index = np.concatenate([[0], np.cumsum(counts)])
     owner = np.repeat(np.arange(len(counts)), counts)
+    # number of each step within its interval, from 1
     inside = np.arange(index[-1]) - index[owner] + 1
     grid = np.concatenate([times[:1], times[owner] + intervals[owner] * (inside / counts[owner])])
     # the given times themselves, not what rounding makes of them

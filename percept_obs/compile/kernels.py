@@ -80,6 +80,7 @@ def solve(
     else:
         states, resets = np.empty(size * count), np.zeros(count, dtype=bool)
         diverged = _compiled(equations)(*inputs, varying, states, resets)
+        # np.empty holds what was in memory before
         states[size * diverged if diverged >= 0 else size * count :] = np.nan
     return Trace(
         np.asarray(states).reshape(count, size),

@@ -158,21 +158,21 @@ class Text:
         self.lines.append(("    " if self.python else "  ") * self.depth + text)
 
     def assign(self, name: str, expression: str) -> None:
-        """Assign a local variable."""
+        """Add a line that assigns a local variable."""
         self.assigned[name] = None
         self.store(name, expression)
 
     def copy(self, targets: str, values: str, count: int) -> None:
-        """Assign values0, values1, ... to targets0, targets1, ..."""
+        """Add lines that assign values0, values1, ... to targets0, targets1, ..."""
         for k in range(count):
             self.assign(f"{targets}{k}", f"{values}{k}")
 
     def store(self, place: str, expression: str) -> None:
-        """Assign an entry of an array."""
+        """Add a line that assigns an entry of an array."""
         self.line(f"{place} = {expression}" + ("" if self.python else ";"))
 
     def formulas(self, expressions: Sequence[sp.Expr], targets: str) -> None:
-        """Assign the expressions to targets0, targets1, ..., common subexpressions first."""
+        """Add lines that assign expressions to targets0, targets1, ..., after their common subexpressions."""
         key = tuple(expressions)
         if key not in self.printed:
             shared, results = common_subexpressions(expressions, sp.numbered_symbols("c", real=True))
@@ -182,7 +182,7 @@ class Text:
             self.assign(name, formula)
 
     def leave(self, value: str) -> None:
-        """Return a value."""
+        """Add a line that returns a value."""
         self.line(f"return {value}" + ("" if self.python else ";"))
 
     @contextmanager

@@ -116,7 +116,7 @@ def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], sty
 
 
 def draw_bound(ax: Axes, recording: Recording, bound: Bound, coordinate: str) -> str:
-    """Draw the least standard deviation of a coordinate under its errors, and say it."""
+    """Draw the least standard deviation of a coordinate under its errors; return a sentence on it."""
     if not base.equal(bound.recording.truth, recording.truth):
         raise ValueError("the bound is along another truth than the runs; draw runs on the recording of the bound")
     least = bound.of(coordinate)
@@ -136,7 +136,7 @@ def _root_mean_square(values: Array, width: int) -> Array:
 
 
 def draw_claim_of_coordinate(ax: Axes, run: Run, column: int, colour: str) -> str:
-    """Draw the interval that the observer claims for a coordinate, and say it; nothing if it claims none."""
+    """Draw the interval that the observer claims for a coordinate; return a sentence on it, empty if it claims none."""
     if run.observer.covariance is None:
         return ""
     low, high = (end[:, column] for end in claimed_interval(run))
@@ -144,7 +144,7 @@ def draw_claim_of_coordinate(ax: Axes, run: Run, column: int, colour: str) -> st
 
 
 def draw_claim(ax: Axes, run: Run, low: Array, high: Array, truth: Array | None, colour: str) -> str:
-    """Draw a band whose infinite ends are at the edge of the axes, and say where it ends and what it holds."""
+    """Draw a claimed band, infinite ends at the axes' edge; return a sentence on its ends and on what it holds."""
     reaching = np.where(np.isposinf(high), ax.get_ylim()[1], high)
     name = "_claim" if CLAIM in ax.get_legend_handles_labels()[1] else CLAIM  # one entry in the legend
     ax.fill_between(run.elapsed, low, reaching, color=colour, alpha=0.2, linewidth=0, zorder=1, label=name)

@@ -194,7 +194,7 @@ def inside(ax: Axes, places: Array) -> Flags:
 
 
 def draw_focus(ax: Axes, focus: Array, path: Array, time: Array) -> str:
-    """Draw the focus as a diamond, a faint path or a pointer at the edge; say where it is, and the closest approach."""
+    """Draw the focus as a diamond, a path or a pointer at the edge; return a sentence on its place and distance."""
     distances = np.linalg.norm(path - focus, axis=1)
     if not np.isfinite(distances).any():
         ax.plot([], [], linestyle="", label="no focus of expansion")
@@ -227,7 +227,7 @@ def _edge(ax: Axes, place: Array) -> Array:
 
 
 def draw_disk(ax: Axes, focus: Array, radius: float, threshold: float, path: Array) -> str:
-    """Draw the disk in which |w| is below the threshold; say how many samples lie in it."""
+    """Draw the disk in which |w| is below the threshold; return a sentence on how many samples lie in it."""
     low, high = np.array([ax.get_xlim(), ax.get_ylim()]).T
     visible = bool(np.linalg.norm(focus[0] - np.clip(focus[0], low, high)) < radius)
     name = f"{'' if visible else '_'}$|w| < {threshold:g}$"
@@ -239,7 +239,7 @@ def draw_disk(ax: Axes, focus: Array, radius: float, threshold: float, path: Arr
 
 
 def draw_blind_lines(ax: Axes, system: PerspectiveSystem, measured: str) -> str:
-    """Draw lines where w vanishes if one output is measured, in a constant motion; say where."""
+    """Draw lines where w vanishes if one output is measured, in a constant motion; return a sentence on them."""
     # As fractions, roots of two entries are equal when they should be.
     numbers = {symbol: sp.Rational(repr(value)) for symbol, value in system.values.items()}
     if system.partition(measured).culprits:

@@ -148,7 +148,7 @@ def _where(found: BoundMap, place: Sequence[Any]) -> str:
 
 
 def _draw_zero_set(ax: Axes, found: BoundMap, threshold: float) -> str:
-    """Draw where w vanishes or is small, and say it."""
+    """Draw where w vanishes or is small; return a sentence on it."""
     system = found.system
     centre = image.focus_of_expansion(system, np.zeros(1))[0] + 0.0  # so that no zero has a sign
     if not np.isfinite(centre).all():
@@ -282,7 +282,7 @@ def _draw_smallest(ax: Axes, found: Sequence[Windows], names: Sequence[str]) -> 
 
 
 def _annotate_least(ax: Axes, one: Excitation) -> str:
-    """Write the least value beside its mark, and say it with the largest one and with what is not drawn."""
+    """Write the least value beside its mark; return a sentence on it, the largest one, and what is not drawn."""
     least, at = np.nanmin(one.smallest), one.time[np.nanargmin(one.smallest)]
     late = at > one.time[0] + 0.85 * (one.time[-1] - one.time[0])
     ha, right = ("right", 4) if late else ("center", 0)

@@ -256,6 +256,7 @@ def _covariances(along: Linearised, start: Array, noise: Array, used: Flags) -> 
             P = Phi @ P @ Phi.T + along.spreads[k - 1]
         if seen.any():
             R, rows = noise[min(k, len(noise) - 1)][np.ix_(seen, seen)], along.measured[seen]
+            # Kalman's update for outputs that are coordinates: C P is rows of P
             shared = P[:, rows]
             P = P - shared @ np.linalg.solve(shared[rows] + R, shared.T)
         # rounding would make P asymmetric, and in time indefinite

@@ -127,6 +127,7 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
     rows = np.column_stack([found.matrices.reshape(len(time), -1), found.scale])
     integrals = cumulative_trapezoid(rows, time, axis=0, initial=0)
     ends = time[from_the_start(recording.elapsed, window)]
+    # integrals between samples: the running integral, interpolated at the window's ends
     begins = np.maximum(ends - window, time[0])
     over = np.stack([np.interp(ends, time, c) - np.interp(begins, time, c) for c in integrals.T], axis=-1)
     matrices = over[:, :-1].reshape(-1, *found.matrices.shape[1:])

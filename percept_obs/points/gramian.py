@@ -290,6 +290,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         # with P = L L^T, the largest s with G >= s P is the least eigenvalue of L^-1 G L^-T
         half = np.linalg.inv(np.linalg.cholesky(weights[0]))
         seen[k] = np.linalg.eigvalsh(half @ G @ half.T)[0]
+        # a sample sees what earlier corrections have changed, not later ones
         hidden = operator * later
         feedback[k] = np.sqrt(np.linalg.eigvalsh(hidden.T @ hidden)[-1])  # the norm, faster than by an SVD
     return DecayBound(begins, np.maximum(seen, 0.0), feedback, window)

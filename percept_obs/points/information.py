@@ -28,6 +28,7 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
         used = np.arange(len(recording.time) - 1, first - 1, -every)  # backwards from the end
         outputs = recording.outputs[used]
         maps = transitions(form, recording.time[used])
+        # products of the steps: from the end back to each sample, of (x, 1)
         back = np.stack([*accumulate(maps, lambda at, map_: map_ @ at, initial=np.eye(form.states + 1))])[:, :-1]
         m = outputs.shape[-1]
         rows = form.rows(outputs).reshape(len(used), form.points, m, form.states) @ back[:, None]
@@ -53,6 +54,7 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
         own = recording.noise_variance or 0.0
         shared = (recording.effective_variance or 0.0) - own  # by all points, so that many on one body do not lessen it
         known_noise = math.sqrt(own + shared * max(1.0, 3 * form.points / form.states))
+        # no camera is better than `finest`, and residuals of few samples may be small by chance
         noise = max(math.sqrt(max(residual, 0.0) / free), finest, known_noise) if free > 0 else math.nan
         if free < 1 or not (depth[seen] > 0).all():
             return x, math.inf, np.full(m, noise), 0.0

@@ -33,6 +33,7 @@ def maps_between(motion: Motion, times: Array) -> Array:
     longest = max(LONGEST, abs(float(times[-1] - times[0])) / MOST_STEPS)
     parts = np.ceil(np.abs(steps) / longest * (1 - 1e-9)).astype(int)
     found = np.tile(np.eye(4), (len(steps), 1, 1))
+    # intervals with the same number of steps go side by side
     for count in np.unique(parts):
         rows = np.flatnonzero(parts == count)
         length = (steps[rows] / count)[:, None]

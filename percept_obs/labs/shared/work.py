@@ -25,7 +25,7 @@ MOMENT = 1e-5
 
 
 def motion_work(motion: Motion, duration: float, period: float) -> float:
-    """Work of moving a point for `duration` seconds and sampling it every `period` seconds."""
+    """Cost of moving a point for `duration` seconds and sampling it every `period`, in the unit of `MOST_WORK`."""
     rows = motion.known(np.linspace(0, duration, INSTANTS))
     A = np.stack(vectorised(motion.parameters, tuple(motion.A))(*rows.T), axis=-1)
     fastest = float(np.abs(A.reshape(-1, 3, 3)).sum(axis=2).max())
