@@ -17,6 +17,7 @@ from percept_obs.checking.tokens import FUNCTIONS
 from percept_obs.checking.words import Words
 
 LARGEST_POWER, LARGEST_DEGREE, LONGEST_INTEGER, LONGEST_PRODUCT = 20, 60, 40, 8
+"""Largest exponent, degree of a power, digits of a power of an integer, and letters of matrices in a product."""
 
 _RELATIONS = {
     sp.StrictLessThan: ("<", r"\lt"),
@@ -28,7 +29,7 @@ _RELATIONS = {
 
 
 class Builder:
-    """Values of a tree's nodes; a method named like a rule of the grammar, with _ before, returns the rule's value.
+    """Turns a parsed tree into sympy: the method _x returns the value of a node that the grammar's rule x made.
 
     `sides` are the right sides of lines by the names on their left: a letter that has one is worth it.
     """
@@ -41,7 +42,7 @@ class Builder:
         self.within: list[str] = []
 
     def side(self, name: str, at: Token) -> tuple[Any, ...]:
-        """Return the values of a line by its name, computed once."""
+        """Return what a line says a letter is, computed once: a value for each part of a chain q = a = b."""
         if name in self.within:
             self.refuse(f'"{name}" is given by itself; begin with what is known', at)
         if name not in self.values:
@@ -54,7 +55,7 @@ class Builder:
         return self.values[name]
 
     def written(self, value: Any, node: Any) -> Any:
-        """Return a value that is not too large once all letters are put in."""
+        """Return the value as it is; refuse its node if it is too large once all definitions are put in."""
         if isinstance(value, sp.Basic) and (why := refused(value)):
             self.refuse(why, node)
         return value
@@ -158,7 +159,7 @@ class Builder:
         self.refuse("the sizes of these matrices do not fit", part)
 
     def _unclear(self, over: Tree, part: Any) -> None:
-        """Refuse a/b c, but not 1/2 (a + b): behind a number and a blank, a bracket stands beside the fraction."""
+        """Refuse a/b c, where c may belong below or beside the fraction, but not 1/2 (a + b), where a blank tells."""
         divisor = over.children[0]
         end = divisor.end_pos if isinstance(divisor, Token) else divisor.meta.end_pos
         start = part.start_pos if isinstance(part, Token) else part.meta.start_pos

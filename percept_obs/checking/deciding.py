@@ -19,11 +19,12 @@ from percept_obs.checking.proving import dimension, identical, ratio
 from percept_obs.checking.sampling import Place, places, region, sample
 
 POINTS, TRIALS, LARGEST, FEW = 12, 60, 2000, 150
+"""Places that must agree for a "yes"; seeds tried; terms of a small formula; parts of one sampled thoroughly."""
 MATRICES = (sp.MatrixBase, sp.MatrixExpr)
 
 
 def explicit(formula: sp.Basic) -> sp.Basic:
-    """Write matrices of letters out, letters such as sigma^2 as powers, and rename bound letters.
+    """Return a formula with matrices entry by entry, sigma^2 as a power of sigma, and bound letters renamed.
 
     Where the size n of a matrix is a letter, it is written out with two rows, m with three: an identity of matrices of
     that size.
@@ -118,18 +119,22 @@ def decided(one: sp.Expr, other: sp.Expr) -> Decision:
         return Decision(True)
     found = identical(one, other)
     if rational(one) and rational(other):
+        # identical at a secret point but by a tiny chance; small ones are compared by all their terms as well
         if found and small(one, other):
             own = {s: sp.Symbol(key(s.name)) for s in one.free_symbols | other.free_symbols}
             _, (left, right) = sfield([one.xreplace(own), other.xreplace(own)])
             found = bool(left == right)
         return Decision(found)
+    # without such parts, different values at the secret point mean different functions
     if found is False and not one.has(*_NUMBERS) and not other.has(*_NUMBERS):
         return Decision(False)
+    # where formulas jump they may be equal on all branches and differ on the borders, which places can show
     if found and not one.has(*_JUMPS) and not other.has(*_JUMPS):
         return Decision(True)
     compared = sample(one, other, thorough=found is None and extent(one).parts + extent(other).parts < FEW)
     if compared.different:
         return Decision(False, where=region(compared.same, compared.different, one, other))
+    # proof and places disagree, or too few places have values: nothing can be told
     if found is False or len(compared.same) < POINTS:
         return Decision(found or None)
     where = "" if found else region(compared.same, compared.nowhere, one, other)
@@ -138,7 +143,7 @@ def decided(one: sp.Expr, other: sp.Expr) -> Decision:
 
 _JUMPS = (sp.sign, sp.Heaviside, sp.Piecewise, sp.floor, sp.ceiling)
 _NUMBERS = (sp.NumberSymbol, sp.I, sp.Abs, sp.Max, sp.Min, *_JUMPS)
-"""Functions that may be related to others in ways that are not known."""
+"""Parts with which a "no" of `identical` is not certain, for it does not know all relations between them."""
 
 
 def same(one: sp.Expr, other: sp.Expr) -> bool | None:
@@ -153,6 +158,7 @@ def same(one: sp.Expr, other: sp.Expr) -> bool | None:
 
 def proportional(one: sp.Expr, other: sp.Expr, positive: bool = False) -> bool | None:
     """Return True if one expression is a number, not zero, times the other."""
+    # the secret point gives the only candidate for the number
     number = ratio(one, other)
     if number:
         found = decided(one, number * other)
@@ -160,6 +166,7 @@ def proportional(one: sp.Expr, other: sp.Expr, positive: bool = False) -> bool |
             return found.truth and (number > 0 or not positive)
     if rational(one) and rational(other):
         return False if one != 0 and other != 0 else one == other
+    # the number may be no fraction, such as pi: then the quotient must be the same at all places
     first = None
     for letters in islice(places(one, other), 2 * POINTS):
         place = Place(letters)
@@ -195,6 +202,7 @@ def same_zeros(one: sp.Expr, other: sp.Expr, nonzero: Iterable[sp.Symbol] = ()) 
     alone += [g for g in second if not any(_vanish_together(f, g) for f in first)]
     if not alone:
         return True
+    # a factor that takes both signs vanishes where no other one does; one that does not may vanish nowhere
     values = ([Place(at)(polynomial) for at in places(polynomial)] for polynomial in alone)
     return False if any(min(found) < 0 < max(found) for found in values) else None
 
@@ -208,10 +216,11 @@ def _vanishing(expression: sp.Expr, nonzero: set[sp.Symbol]) -> list[sp.Expr] | 
 
 
 def _vanish_together(one: sp.Expr, other: sp.Expr) -> bool | None:
-    """Return True for multiples of each other, and for sums of squares whose bases are sums of each other."""
+    """Return True if two polynomials surely have the same zeros: multiples, or squares of bases with the same span."""
     if proportional(one, other):
         return True
     bases = _squares(one), _squares(other)
+    # a sum of squares vanishes where all bases do, and bases with the same span vanish together
     return all(bases) and len({dimension(*part) for part in (*bases, bases[0] + bases[1])}) == 1
 
 
@@ -219,6 +228,7 @@ def _squares(polynomial: sp.Expr) -> list[sp.Expr]:
     """Return polynomials whose squares, times positive numbers, add up to this one; nothing if none are found."""
     bases, rest = [], sp.expand(polynomial)
     for letter in sorted(rest.free_symbols, key=str):
+        # complete the square in one letter after the other; what is left must be 0
         parts = sp.Poly(rest, letter).all_coeffs()
         if len(parts) == 3 and parts[0].is_positive and parts[0].is_number:
             bases.append(letter + parts[1] / (2 * parts[0]))
@@ -245,6 +255,7 @@ def size(e: sp.Basic) -> int:
 
 def small(*formulas: sp.Expr) -> bool:
     """Return True if formulas have few terms once brackets are multiplied out and denominators cleared."""
+    # each denominator multiplies all terms once it is cleared
     below = {1 / power for e in formulas for power in e.atoms(sp.Pow) if power.exp.is_Integer and power.exp < 0}
     return sum(map(size, formulas)) * prod(map(size, below)) <= LARGEST
 

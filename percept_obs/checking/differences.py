@@ -29,6 +29,7 @@ def compared(mine: sp.Expr, true: sp.Expr) -> tuple[tuple[Difference, ...], tupl
     parts = [*sp.Add.make_args(mine), true]
     letters = _letters_for_functions(parts)
     field, elements = sfield([part.xreplace(letters) for part in parts])
+    # the same factor for all parts leaves their differences in the same products
     common = field.ring.one
     for element in elements:
         common = common.lcm(element.denom)
@@ -36,6 +37,7 @@ def compared(mine: sp.Expr, true: sp.Expr) -> tuple[tuple[Difference, ...], tupl
     for number, square in _squares(field, letters):
         polynomials = [_reduced(p, number, square) for p in polynomials]
     *own, target = [dict(p.terms()) for p in polynomials]
+    # my terms one by one say which of them is wrong, their sum whether one is
     total = dict(sum(polynomials[:-1], field.ring.zero).terms())
     back = {letter: function for function, letter in letters.items()}
     differ = [m for m in {**target, **total} if total.get(m, 0) != target.get(m, 0)]
@@ -64,6 +66,7 @@ def _letters_for_functions(parts: Sequence[sp.Expr]) -> dict[sp.Expr, sp.Symbol]
             for part in node.args:
                 visit(part)
         else:
+            # equal values at a random point: the same function, however its argument is written
             outermost[node] = sp.Symbol(f"f{complex(point(node)):.10e}" if point else f"f{node}")
 
     for part in parts:
@@ -86,9 +89,10 @@ def _squares(field: Any, letters: Mapping[sp.Expr, sp.Symbol]) -> Iterator[tuple
 
 
 def _reduced(polynomial: Any, number: int, square: Any) -> Any:
-    """Return a polynomial in which a letter's square is put in."""
+    """Return a polynomial in which a polynomial replaces the square of a letter, given by its number."""
     found = polynomial.ring.zero
     for powers, coefficient in polynomial.terms():
+        # x^5 becomes x (x^2)^2, with the square put in
         rest = (*powers[:number], powers[number] % 2, *powers[number + 1 :])
         found += polynomial.ring({rest: coefficient}) * square ** (powers[number] // 2)
     return found

@@ -9,17 +9,17 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.checking.differences import Difference, compared
-from percept_obs.checking.factors import after_a_minus, bracket, several
+from percept_obs.checking.factors import bracket, terms_lacking_a_factor, terms_of_a_forgotten_bracket
 from percept_obs.checking.limits import left
 from percept_obs.checking.lines import VALUE, ZEROS
 from percept_obs.checking.places import at, leaves_apart
-from percept_obs.checking.search import THROUGHOUT, Search, close
+from percept_obs.checking.search import KINDS_IN_ALL_TERMS, Search, close
 from percept_obs.checking.slips import MISTAKES, Slip, factored, is_symbol, siblings_in, slips_in
 from percept_obs.checking.target import Target
-from percept_obs.checking.throughout import elsewhere, repeated, swapped, throughout
+from percept_obs.checking.throughout import change_of_all_terms, confusion, slip_in_all_copies, swap_in_a_bracket
 
 MOST_TERMS = 12
-"""Wrong terms that are listed."""
+"""Largest number of wrong terms that are listed."""
 SECONDS = 1.2
 """Time limit of the search for slips; what was found by then is reported."""
 NO_VALUES = "this has no values that can be compared; look for a division by zero, or for powers of powers"
@@ -53,7 +53,7 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
     search = Search(mine, line, frozenset(target.letters.values()), time.thread_time() + min(SECONDS, 0.6 * left()))
     if not search.places:
         return Explanation(whole=NO_VALUES)
-    if whole := elsewhere(search, row, target):
+    if whole := confusion(search, row, target):
         return Explanation(whole=whole)
     found, whole = _found(search, target)
     steps = tuple(_steps(search, row, target, right)) if line.kind == VALUE else ()
@@ -79,7 +79,7 @@ def _found(search: Search, target: Target) -> tuple[tuple[Slip, ...], str]:
     weak = one and (one.kind == "replaced" or (one.kind == "sign" and not one.path and one.before.is_Add))
     if one and not weak:
         return (one,), ""
-    everywhere = throughout(search) or swapped(search)
+    everywhere = change_of_all_terms(search) or swap_in_a_bracket(search)
     if one and one.kind == "sign" and (not everywhere or everywhere.kind != "twins"):
         return (one,), ""
     if everywhere or search.line.kind != VALUE:
@@ -91,11 +91,12 @@ def _found(search: Search, target: Target) -> tuple[tuple[Slip, ...], str]:
             one_more = Search(search.mine, line, search.letters, search.until).single()
             if one_more and one_more.kind != "replaced":
                 return (one_more,), convention.words
-    return several(search) or after_a_minus(search) or repeated(search) or ((one,) if one else ()), ""
+    terms = terms_lacking_a_factor(search) or terms_of_a_forgotten_bracket(search) or slip_in_all_copies(search)
+    return terms or ((one,) if one else ()), ""
 
 
 def _missing(search: Search, differences: Sequence[Difference]) -> Slip | None:
-    """Return one product that is missing if all that differs is missing."""
+    """Return the one missing product, if all that differs is absent from my line and factors into one product."""
     if search.line.kind != VALUE or not differences or any(d.mine != 0 for d in differences):
         return None
     term = sp.factor_terms(sp.factor(sp.Add(*(d.true * d.product for d in differences))))
@@ -105,7 +106,7 @@ def _missing(search: Search, differences: Sequence[Difference]) -> Slip | None:
 def _apart(search: Search, slips: Sequence[Slip], row: int, target: Target) -> Iterator[tuple[str, ...]]:
     """Yield the steps in which each of two slips in different terms can have happened, with the other one mended."""
     at = [slip.path[0] if slip.path and search.mine.is_Add else None for slip in slips]
-    if len(slips) != 2 or at[0] == at[1] or any(slip.kind in ("replaced", *THROUGHOUT) for slip in slips):
+    if len(slips) != 2 or at[0] == at[1] or any(slip.kind in ("replaced", *KINDS_IN_ALL_TERMS) for slip in slips):
         return
     for other, place in zip(reversed(slips), reversed(at), strict=True):
         alone = search.mine - (0 if place is None else search.terms[place]) + other.formula
@@ -179,13 +180,13 @@ def plain(e: sp.Basic) -> str:
 def wrong_terms(found: Explanation, mine: sp.Expr) -> list[tuple[tuple[int, ...], sp.Expr]]:
     """Return the places of wrong terms and the terms; a missing term has no place."""
     places: dict[tuple[int, ...], sp.Expr] = {}
-    for path in [slip.path for slip in found.slips if slip.path or slip.kind not in ("missing", *THROUGHOUT)]:
+    for path in [slip.path for slip in found.slips if slip.path or slip.kind not in ("missing", *KINDS_IN_ALL_TERMS)]:
         # up from the slip to the term in which it is
         while path and not at(mine, path[:-1]).is_Add:
             path = path[:-1]
         places[path] = at(mine, path)
     some = bool(found.wrong) and mine.is_Add and len(found.wrong) < len(mine.args)
-    if not found.slips or (some and any(slip.kind in THROUGHOUT for slip in found.slips)):
+    if not found.slips or (some and any(slip.kind in KINDS_IN_ALL_TERMS for slip in found.slips)):
         indices = [(k,) for k in found.wrong] if mine.is_Add else [()]
         places |= {path: at(mine, path) for path in indices}
     return [(path, term) for path, term in places.items() if not any(path[:n] in places for n in range(len(path)))]
@@ -238,7 +239,8 @@ def _signed(number: sp.Expr) -> str:
 
 def _sentence(slip: Slip, show: Callable[[sp.Basic], str]) -> str:
     before, after, kind = show(slip.before), show(slip.after), slip.kind
-    where = f" in {show(slip.term)}" if slip.term not in (slip.before, slip.after) and kind not in THROUGHOUT else ""
+    inside = slip.term not in (slip.before, slip.after) and kind not in KINDS_IN_ALL_TERMS
+    where = f" in {show(slip.term)}" if inside else ""
     if kind in ("letter", "other letter", "throughout"):
         hats = {"hat" in getattr(side, "name", "") for side in (slip.before, slip.after)}
         what = "the hat: " if len(hats) == 2 else "the index: " if kind != "other letter" else ""

@@ -13,18 +13,20 @@ from percept_obs.checking.search import Search, close
 from percept_obs.checking.slips import Slip
 
 LARGEST_SUM = 10
-"""Terms of a sum of which all choices are tried; of longer ones at most four terms."""
+"""Most terms of a sum of which every choice is tried; of longer ones two to four terms, and all."""
 LONGEST_BRACKET = 7
+"""Most terms of a sum in which a forgotten bracket is looked for."""
 
 
-def several(search: Search) -> tuple[Slip, ...]:
-    """Return the terms of a sum that lack one and the same factor; the sign is such a factor."""
+def terms_lacking_a_factor(search: Search) -> tuple[Slip, ...]:
+    """Return a slip for each term of a sum that lacks the same factor, such as -1; nothing if none is found."""
     for spot in takewhile(lambda _: not search.over, search.spots):
         terms = spot.node.args if spot.node.is_Add else ()
         if len(terms) < 2 or (values := search.array(terms)) is None:
             continue
         masks = _choices(len(terms))
-        for factor, f in _with_signs_and_inverses(search):
+        for factor, f in _factors_to_try(search):
+            # a term t that lacks the factor f adds t (f - 1) once mended: all choices of terms in one product
             sums = masks @ (values * spot.outer * (f - 1))
             hit = next(iter(np.flatnonzero(_near(sums, search.lacking))), None)
             if hit is None:
@@ -42,22 +44,23 @@ def several(search: Search) -> tuple[Slip, ...]:
     return ()
 
 
-def _with_signs_and_inverses(search: Search) -> Iterator[tuple[sp.Expr, Any]]:
-    """Yield factors that terms may lack, then those with another sign, and those that are one too many."""
+def _factors_to_try(search: Search) -> Iterator[tuple[sp.Expr, Any]]:
+    """Yield factors that terms may lack, then letters with a minus, then inverses of letters that are one too many."""
     yield from search.factors
     letters = [(letter, f) for letter, f in search.factors if letter in search.mine.free_symbols]
     yield from ((-letter, -f) for letter, f in letters)
     yield from ((1 / letter, 1 / f) for letter, f in letters)
 
 
-def after_a_minus(search: Search) -> tuple[Slip, ...]:
-    """Return the terms around which a bracket with a minus and a factor was forgotten: -a + b c for -(a + b) c."""
+def terms_of_a_forgotten_bracket(search: Search) -> tuple[Slip, ...]:
+    """Return a slip for each term that belongs into a forgotten bracket: -a + b c was typed for -(a + b) c."""
     for spot in takewhile(lambda _: not search.over, search.spots):
         terms = spot.node.args if spot.node.is_Add and len(spot.node.args) <= LONGEST_BRACKET else ()
         if len(terms) < 2 or (values := search.array(terms)) is None:
             continue
-        for first, last, factor in _ends(terms):
+        for first, last, factor in _bracket_ends(terms):
             f = search.values(factor)
+            # -a + t + b c is to be -(a + t + b) c: what each term adds once mended is linear in the choice of terms t
             between = [k for k in range(len(terms)) if k not in (first, last)]
             if f is None:
                 continue
@@ -74,7 +77,7 @@ def after_a_minus(search: Search) -> tuple[Slip, ...]:
 
 
 def bracket(slips: Sequence[Slip], search: Search) -> sp.Expr | None:
-    """Return the bracket that may be missing where terms of a sum lack a factor which a similar one beside them has."""
+    """Return the product c (a + b) that was perhaps meant where a + b c is typed, a and b alike; None if none fits."""
     factor, path = slips[0].after, slips[0].path
     parent = at(search.mine, path[:-1])
     if not path or not parent.is_Add or len(slips) > 2 or factor.is_number or factor.could_extract_minus_sign():
@@ -101,8 +104,8 @@ def _factors(e: sp.Expr) -> int:
     return len([f for f in sp.Mul.make_args(e) if not f.is_number])
 
 
-def _ends(terms: Sequence[sp.Expr]) -> Iterator[tuple[int, int, sp.Expr]]:
-    """Yield the numbers of a negative term and of one that is not, with a factor of the latter."""
+def _bracket_ends(terms: Sequence[sp.Expr]) -> Iterator[tuple[int, int, sp.Expr]]:
+    """Yield the first term -a and the last term b c of a bracket that may be missing, by their numbers, and c."""
     for first, last in combinations(range(len(terms)), 2):
         for a, b in ((first, last), (last, first)):
             if terms[a].could_extract_minus_sign():
@@ -125,6 +128,7 @@ def _choices(count: int) -> Any:
         masks = _all_choices(count)
         masks = masks[masks.sum(axis=1) > 1]
         return masks[np.argsort(masks.sum(axis=1), kind="stable")]
+    # 2^n choices are too many: people forget a factor in few terms, or in all
     chosen = [c for size in (2, 3, 4) for c in combinations(range(count), size)] if count <= 24 else []
     masks = np.zeros((len(chosen) + 1, count), dtype=int)
     for row, columns in enumerate(chosen):

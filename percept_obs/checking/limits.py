@@ -1,4 +1,4 @@
-"""Limits on what a formula may cost: processor time, and size, which definitions cannot go round."""
+"""Limits on what a formula may cost: processor time, and its size once all definitions are put in."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ import sympy as sp
 SECONDS = 2.0
 TOO_LONG = f"too long to decide in {SECONDS:.0f} s; write it shorter"
 LARGEST, DEEPEST, HIGHEST, LONGEST, TALLEST = 4000, 100, 200, 40, 1e4
+"""Most parts of formulas, their depth, degree, digits of a number, and bits of one's integer part."""
 _AGAIN = 0.05
-"""Seconds after which the exception is raised once more, should it have been lost."""
+"""Seconds after which the exception is raised again, for somebody's handler may have swallowed the first one."""
 
 T = TypeVar("T")
 
@@ -35,7 +36,7 @@ class _Over(BaseException):
     """The time is up; handlers of errors do not catch it."""
 
 
-_here = threading.local()
+_limits_of_thread = threading.local()
 
 
 def limited(work: Callable[[], T], seconds: float = SECONDS) -> T:
@@ -43,7 +44,7 @@ def limited(work: Callable[[], T], seconds: float = SECONDS) -> T:
 
     Inside of another limit the outer one counts.
     """
-    outer: _Watch | None = getattr(_here, "watch", None)
+    outer: _Watch | None = getattr(_limits_of_thread, "watch", None)
     if outer:
         if outer.over:
             raise TooLong(TOO_LONG)
@@ -51,7 +52,7 @@ def limited(work: Callable[[], T], seconds: float = SECONDS) -> T:
             return work()
         except (_Over, RecursionError):
             raise TooLong(TOO_LONG) from None
-    watch = _here.watch = _Watch(seconds)
+    watch = _limits_of_thread.watch = _Watch(seconds)
     try:
         try:
             watch.start()
@@ -65,13 +66,13 @@ def limited(work: Callable[[], T], seconds: float = SECONDS) -> T:
 
 def left() -> float:
     """Return how many seconds are left to what is limited."""
-    watch: _Watch | None = getattr(_here, "watch", None)
+    watch: _Watch | None = getattr(_limits_of_thread, "watch", None)
     return max(watch.end - watch.now(), 0) if watch else SECONDS
 
 
 def heed() -> None:
-    """Read the clock where nobody else does; called wherever long work is done in small pieces."""
-    watch: _Watch | None = getattr(_here, "watch", None)
+    """Raise if the time is up, where no second thread can do so; called in the loops of long work."""
+    watch: _Watch | None = getattr(_limits_of_thread, "watch", None)
     if watch and watch.alone and watch.now() > watch.until:
         raise _Over
 
@@ -111,7 +112,7 @@ class _Watch:
         with self.lock:
             self.done.set()
             self.send(None)
-        _here.watch = None
+        _limits_of_thread.watch = None
 
     def wait(self) -> None:
         """Wait for the end, in a thread of its own."""
@@ -121,7 +122,7 @@ class _Watch:
                     self.send(ctypes.py_object(_Over))
 
     def send(self, error: Any) -> None:
-        """Let the thread raise an exception as soon as it can, or no longer."""
+        """Let the watched thread raise an exception at its next instruction; None takes back one not raised yet."""
         self.until = self.now() + _AGAIN
         ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(self.thread), error)
 

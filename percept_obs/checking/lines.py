@@ -17,7 +17,7 @@ VALUE, EQUATION, INEQUALITY, ZEROS = "value", "equation", "inequality", "zeros"
 
 @dataclass(frozen=True)
 class Line:
-    """Line of a target.
+    """Line that a target asks for: its name, its formula, and how a typed formula is compared with it.
 
     The name is the left side as it is typed, "y1'", or words; empty if it has none.  The formula is the right side; of
     other equations and inequalities the left side less the right one.  Equations are the same up to a number,
@@ -85,7 +85,7 @@ def _strict(relation: Relational) -> bool:
 
 
 def of_matrices(relation: Relational) -> Relational:
-    """Write 0 as a matrix; a ValueError says if the sides do not fit."""
+    """Return a relation of matrices with 0 as a zero matrix; raise ValueError if the sides' sizes differ."""
     shape = next(side.shape for side in relation.args if isinstance(side, sp.MatrixBase))
     left, right = (sp.ImmutableMatrix.zeros(*shape) if side == 0 else side for side in relation.args)
     for side in (left, right):
@@ -102,7 +102,7 @@ def primed(name: str) -> str:
 
 
 def condition(formula: Boolean) -> sp.Expr:
-    """Return the expression that is not zero where a condition of parts that are not zero holds."""
+    """Return an expression that is not zero exactly where a condition holds: f g for f != 0 and g != 0."""
     if isinstance(formula, sp.And):
         return sp.Mul(*map(condition, formula.args))
     if isinstance(formula, sp.Or):

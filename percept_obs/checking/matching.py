@@ -33,7 +33,7 @@ class Verdict(StrEnum):
 STRICT = "the two sides are never equal: write < or >"
 WEAK = "the two sides may be equal: write <= or >="
 LONGEST_LIST = 4
-"""Letters that are listed where a formula is to be written with these."""
+"""Most letters that a note lists to write a formula with; if there are more, it lists those to write out."""
 TRANSPOSED = "your matrix is the transpose of the one asked for"
 
 
@@ -52,15 +52,15 @@ class Judged:
 
 def judged(readings: Sequence[Reading], target: Target) -> tuple[Judged, ...]:
     """Return each line with its verdict."""
-    readings, known = _with_what_is_known(readings, target)
+    readings, known = _with_definitions_put_in(readings, target)
     assigned = _assigned(readings, target)
     lines = [_judged(formula, target, row, strict) for row, formula, strict in assigned]
     found = _carried(_by_convention(_turned(lines, readings, assigned, target), target), target)
     return tuple(_noted(line, known) if line.verdict == Verdict.RIGHT else line for line in found)
 
 
-def _with_what_is_known(readings: Sequence[Reading], target: Target) -> tuple[list[Reading], str]:
-    """Put in what letters such as X, e1 or w1 are by definition, and say with which letters to write that.
+def _with_definitions_put_in(readings: Sequence[Reading], target: Target) -> tuple[list[Reading], str]:
+    """Return lines with what X, e1 or w1 are by definition put in, and a note on how to write them instead.
 
     A line that says no more than that, such as y3 = 1/Z, is left out.
     """
@@ -125,7 +125,7 @@ def _decided(mine: sp.Expr, target: Target, row: int) -> Decision:
 
 
 def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp.Expr, bool | None]]:
-    """Return the row of the target and the expression of each formula."""
+    """Return for each formula its row in the target, its expression, and if it is strict; None of an equation."""
     count, rows = len(target.lines), target.rows
     assigned: list[tuple[int, sp.Expr, bool | None]] = []
     unnamed = [r for r in readings if r.name not in rows and r.name not in target.blocks]

@@ -24,6 +24,7 @@ from percept_obs.checking.tokens import (
 )
 
 LONGEST, LONGEST_NUMBER, LONGEST_WORD, DEEPEST, MOST_INTEGRALS = 9000, 15, 60, 40, 20
+"""Most characters of a text, digits of a number, letters of a word, brackets in brackets, and integrals."""
 _TOO_LONG = {
     r"'{9}": "more than 8 primes stand here",
     rf"[A-Za-z0-9_\u0302-\u0307]{{{4 * LONGEST_WORD}}}": f"a word has more than {LONGEST_WORD} letters",
@@ -63,7 +64,7 @@ class Notation:
         return raw
 
     def _sums(self, tokens: list[Token]) -> list[Token]:
-        """Write sums with numbers as their bounds out."""
+        """Write out sums whose bounds are numbers, term by term."""
         for start in range(len(tokens) - 1, -1, -1):
             if tokens[start].type != "SUM":
                 continue
@@ -85,7 +86,7 @@ class Notation:
         return tokens
 
     def _numbers(self, tokens: list[Token]) -> list[Token]:
-        """Decimal commas, digits with an exponent of ten, and the transpose; refuse long numbers and deep brackets."""
+        """Read decimal commas, exponents of ten and transposes; refuse long numbers and deeply nested brackets."""
         out: list[Token] = []
         opened: list[str] = []
         for token in tokens:
@@ -219,6 +220,7 @@ class Notation:
                 opened += [token.type] if token.type in OPENING else []
                 out.append(token)
                 continue
+            # a bar closes if one is open and an operand stands before it, else it opens; \left and \right tell
             top = opened[-1] if opened else ""
             ended = bool(out) and out[-1].type in _OPERAND_ENDS
             if token == "||" and top == "BAR" and ended:  # |a||b|
@@ -243,6 +245,7 @@ class Notation:
                 token = token.update(type="FUNCTION", value="sqrt")
             if token.type == "_FRACTION":
                 wanted = 2
+            # TeX takes one digit for each part of a fraction: \frac12 is 1/2
             elif wanted and token.type == "NUMBER" and token.isdigit() and len(token) <= wanted:
                 for digit in token:
                     out += [
@@ -274,6 +277,7 @@ class Notation:
             end = unit_end(tokens, partner, start)
             if end is None:
                 continue
+            # sin 2 y1 x may be sin(2 y1 x) or sin(2 y1) x
             if tokens[end].type in _OPERAND_STARTS:
                 told = (f"{token} of all that follows", f"{token} times what follows")
                 self.refuse(two_meanings(told, f"write brackets, {token}(...)"), tokens[end])

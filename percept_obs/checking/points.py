@@ -16,7 +16,7 @@ from percept_obs.compile import Intermediate
 DIGITS = 60
 ACCENTS = r"(?<=[A-Za-z0-9])(?:hat|bar|tilde|dot)"
 KINKED = (sp.Abs, sp.sign, sp.Piecewise, sp.Max, sp.Min, sp.floor, sp.ceiling)
-"""Functions that may agree on many points and differ elsewhere."""
+"""Functions with kinks or jumps: formulas with them may agree at many points and differ elsewhere."""
 
 
 class NoValue(ArithmeticError):
@@ -88,14 +88,14 @@ class Point:
         return self._opaque(e) if self.opaque and e.args else self._special(e)
 
     def _opaque(self, e: sp.Basic) -> Any:
-        """Return a random value for a function with kinks, an integral, ...; arguments by their values."""
+        """Return a random value for a function with kinks, an integral, ..., the same one for equal arguments."""
         if isinstance(e, sp.Abs | sp.sign):
             _, sign = _random(self.seed, f"sign {self._name(e.args[0])}")  # its square is 1, as that of the true one
             return sign * self(e.args[0]) if isinstance(e, sp.Abs) else sign
         return self._drawn(f"{e.func.__name__} {[self._name(part) for part in e.args]}")
 
     def _name(self, e: sp.Basic) -> str:
-        """Return the same text for equal arguments."""
+        """Return a text that is equal for equal arguments of a function."""
         if not e.args:
             return key(str(e))
         if isinstance(e, Relational | sp.Tuple):

@@ -17,8 +17,9 @@ from percept_obs.checking.points import key
 from percept_obs.compile import Intermediate
 
 PARTS, TRIALS, BRANCHES = 5040, 60, 6
-"""Denominators of multiples of angles divide the first; points that are tried; roots and kinks that are told apart."""
+"""Fractions of angles have denominators that divide PARTS; points that are tried; most roots and kinks on a branch."""
 OPAQUE = "opaque"
+"""Begins the key of a value that was drawn for a function without known relations."""
 CONDITIONS = (sp.And, sp.Or, sp.Not)
 
 
@@ -34,17 +35,19 @@ class _Again(Exception):
 def _prime() -> int:
     """Return a secret prime of 127 bits, modulo which there are roots of unity."""
     while True:
+        # 2 PARTS divides p - 1, so that the field has a root of unity of that order
         p = 2 * PARTS * (2**112 + secrets.randbits(112)) + 1
         if isprime(p):
             return p
 
 
 @cache
-def _turn() -> int:
+def _root_of_unity() -> int:
     """Return a primitive root of unity, e^(i pi / PARTS)."""
     p = _prime()
     while True:
         root = pow(secrets.randbelow(p - 2) + 2, (p - 1) // (2 * PARTS), p)
+        # 2, 3, 5 and 7 are the prime factors of 2 PARTS: a root of that order is none of a lower one
         if all(pow(root, 2 * PARTS // q, p) != 1 for q in (2, 3, 5, 7)):
             return root
 
@@ -64,22 +67,24 @@ def identical(one: sp.Basic, other: sp.Basic) -> bool | None:
 
 
 def _on_all_branches(one: sp.Basic, other: sp.Basic) -> bool | None:
-    """Compare at one point, with each choice of signs."""
+    """Compare two formulas at one point, with each choice of signs of their roots and kinks; see `identical`."""
     found: list[bool] = []
     drawn: dict[Any, int] = {}
     branches, complete = 0, True
     while len(found) < 2**branches:
-        at = _Exactly(len(found), drawn)
+        at = _SecretPoint(len(found), drawn)
         try:
             apart = at.difference(one, other)
             if apart and not at.complete:  # are functions without known relations the same on both sides?
                 kept = {name: v for name, v in drawn.items() if not (isinstance(name, tuple) and name[0] == OPAQUE)}
-                again = _Exactly(len(found), kept)
+                again = _SecretPoint(len(found), kept)
                 complete = complete and again.difference(one, other) == apart
         except Unproved:
             return None
         found.append(apart == 0)
+        # how many signs there are is known only once the formulas are evaluated
         branches = max(branches, at.count)
+        # signs may depend on each other, so that some branches do not exist: equal on some only proves nothing
         if branches > BRANCHES or len(set(found)) > 1:
             return None
     return True if found[0] else False if complete else None
@@ -87,7 +92,7 @@ def _on_all_branches(one: sp.Basic, other: sp.Basic) -> bool | None:
 
 def ratio(one: sp.Basic, other: sp.Basic) -> sp.Rational | None:
     """Return the short fraction that one formula is of another at a secret point; None if there is none."""
-    at = _Exactly(0, {})
+    at = _SecretPoint(0, {})
     with suppress(_Again, Unproved):
         return at.fraction(at.value(one) * at.inverse(at.value(other)))
     return None
@@ -95,13 +100,14 @@ def ratio(one: sp.Basic, other: sp.Basic) -> sp.Rational | None:
 
 def dimension(*rows: sp.Basic) -> int:
     """Return how many of these polynomials are linearly independent."""
-    field, points = sp.GF(_prime()), [_Exactly(0, {}) for _ in range(len(rows) + 1)]
+    # dependent at one more random point than there are rows: dependent everywhere
+    field, points = sp.GF(_prime()), [_SecretPoint(0, {}) for _ in range(len(rows) + 1)]
     values = [[field(at.value(row)) for row in rows] for at in points]
     return int(DomainMatrix(values, (len(values), len(rows)), field).rank())
 
 
-class _Exactly:
-    """Exact values at a secret point; bits of the branch are signs of roots and kinks, in the order in which they come.
+class _SecretPoint:
+    """Exact values at a secret point; the bits of `branch` are the signs of the roots and kinks, as they are met.
 
     Attributes
     ----------
@@ -139,6 +145,7 @@ class _Exactly:
 
     def fraction(self, number: int) -> sp.Rational | None:
         """Return the fraction of at most nine digits that a number is."""
+        # Euclid's algorithm stopped half way: rational reconstruction of s / u = number modulo p
         (r, s), (t, u) = (self.p, number % self.p), (0, 1)
         while s > 10**9:
             r, s, t, u = s, r % s, u, t - r // s * u
@@ -157,6 +164,7 @@ class _Exactly:
                 product = product * self.value(factor) % self.p
             return product
         if e.is_Pow and e.exp.is_Rational:
+            # only square roots are told apart by a sign; of others there may be no root or several
             if e.exp.q > 2:
                 raise Unproved
             base = self.value(e.base) if e.exp.q == 1 else self.root(e.base)
@@ -164,7 +172,7 @@ class _Exactly:
         if e.is_Float:
             return self.value(sp.Rational(str(e)))
         if e is sp.I:
-            return pow(_turn(), PARTS // 2, self.p)
+            return pow(_root_of_unity(), PARTS // 2, self.p)
         if e is sp.pi:
             return self.draw("pi")
         if e is sp.E or isinstance(e, sp.exp):
@@ -175,7 +183,7 @@ class _Exactly:
             return self.quotient(e, True)
         if type(e) in _HYPERBOLIC:
             return self.quotient(e, False)
-        return self.kinked(e)
+        return self.value_by_signs(e)
 
     def quotient(self, e: sp.Basic, circular: bool) -> int:
         """Return sin, cosh and so on, by exponentials."""
@@ -191,7 +199,7 @@ class _Exactly:
         if number == 0:
             return 1
         if circular and (part := self.fraction(number * self.inverse(self.draw("pi")))) and PARTS % part.q == 0:
-            return pow(_turn(), int(part * PARTS), self.p)
+            return pow(_root_of_unity(), int(part * PARTS), self.p)
         for base, root in bases:
             part = self.fraction(number * self.inverse(base))
             if part is not None and PARTS % part.q == 0:
@@ -202,46 +210,50 @@ class _Exactly:
             for term in terms:
                 product = product * self.exponential(term, circular) % self.p
             return product
+        # exp(log(x)) = x is an identity that values drawn at random do not keep
         if e.has(sp.log, sp.I, *_INVERSE):
             self.complete = False
+        # the PARTS-th root is drawn, so that exp(e q) is known for every fraction q = n / PARTS
         root = self.draw((circular, number))
         bases.append((number, root))
         return pow(root, PARTS, self.p)
 
     def sign(self, e: sp.Basic) -> int:
         """Return the sign that an expression has on this branch."""
-        if known := _definite(e):
+        if known := _known_sign(e):
             return known
         product = 1
         for factor, power in powers(e):
+            # an even power is never negative
             if power % 2:
-                product *= _definite(factor) or self.kink(self.value(factor))
+                product *= _known_sign(factor) or self.kink(self.value(factor))
         return product
 
     def kink(self, number: int) -> int:
-        """Return the sign of a number; of multiples of each other it is one choice."""
+        """Return the sign of a number on this branch; it is chosen once for all multiples of a number."""
         for other, sign in [(1, 1), *self.kinks]:
             part = self.fraction(number * self.inverse(other))
             if part:
                 return sign if part > 0 else -sign
         if number == 0:
             raise Unproved
-        self.kinks.append((number, self.choice()))
+        self.kinks.append((number, self.next_sign()))
         return self.kinks[-1][1]
 
-    def choice(self) -> int:
-        """Return a sign, as the branch has it."""
+    def next_sign(self) -> int:
+        """Return the sign that this branch gives to the next root or kink, 1 or -1."""
         self.count += 1
         return -1 if self.branch >> (self.count - 1) & 1 else 1
 
     def root(self, e: sp.Expr) -> int:
-        """Return a square root: even factors come out with their sign, positive ones have roots of their own."""
+        """Return a square root: |f| of a factor f^2, a root of each positive factor, and one of all that is left."""
         product, rest = 1, 1
         for factor, power in powers(e):
             number, half = self.value(factor), int(power) // 2
+            # sqrt(f^2) is |f|, not f
             size = self.sign(factor) * number if half else 1
             product = product * pow(size if half >= 0 else self.inverse(size), abs(half), self.p) % self.p
-            if power % 2 and _definite(factor) == 1:
+            if power % 2 and _known_sign(factor) == 1:
                 product = product * self.plain_root(number) % self.p
             elif power % 2:
                 rest = rest * number % self.p
@@ -251,7 +263,7 @@ class _Exactly:
         if number == 1:
             return 1
         if number in (2, 3):  # twice the cosine of pi/4 and of pi/6
-            turn = pow(_turn(), PARTS // (2 * number), self.p)
+            turn = pow(_root_of_unity(), PARTS // (2 * number), self.p)
             return turn + self.inverse(turn)
         for other, root in self.roots:
             part = self.fraction(number * self.inverse(other))
@@ -260,11 +272,11 @@ class _Exactly:
         found = sqrt_mod(number, self.p) if number else 0
         if found is None:
             raise _Again
-        self.roots.append((number, self.choice() * found))
+        self.roots.append((number, self.next_sign() * found))
         return self.roots[-1][1]
 
-    def kinked(self, e: sp.Basic) -> int:
-        """Return the value of what depends on signs; of any other function a random one for each argument."""
+    def value_by_signs(self, e: sp.Basic) -> int:
+        """Return the value of |x|, a sign, a maximum or cases on this branch; of other functions a random one."""
         half = self.inverse(2)
         if isinstance(e, sp.Abs):
             return self.sign(e.args[0]) * self.value(e.args[0])
@@ -286,12 +298,13 @@ class _Exactly:
         if not e.args or not isinstance(e, sp.Expr):
             raise Unproved
         self.complete = False
-        return self.draw((OPAQUE, e.func.__name__, *map(self.named, e.args)))
+        # any other function has the same value wherever its arguments have, and no other relation is known
+        return self.draw((OPAQUE, e.func.__name__, *map(self.argument_key, e.args)))
 
-    def named(self, e: sp.Basic) -> Any:
-        """Return what tells arguments of a function apart."""
+    def argument_key(self, e: sp.Basic) -> Any:
+        """Return a key that is equal for equal arguments of a function."""
         if isinstance(e, sp.Tuple | Relational):
-            return (type(e).__name__, *map(self.named, e.args))
+            return (type(e).__name__, *map(self.argument_key, e.args))
         return self.value(e) if isinstance(e, sp.Expr) else str(e)
 
     def holds(self, condition: sp.Basic) -> bool:
@@ -306,22 +319,22 @@ class _Exactly:
         return bool(condition == sp.true)
 
 
-def _definite(e: sp.Basic) -> int:
-    """Return the sign of an expression that has the same one everywhere but where it is zero; 0 if that is not seen."""
+def _known_sign(e: sp.Basic) -> int:
+    """Return the sign, 1 or -1, that an expression has wherever it is not zero; 0 if it may have both."""
     if e.is_Rational:
         return 1 if e > 0 else -1
     if e.is_Symbol or e is sp.pi or e is sp.E:
         return 1 if e.is_nonnegative else -1 if e.is_nonpositive else 0
     if e.is_Pow and e.exp.is_Rational:
         even = e.exp.q == 2 or e.exp.p % 2 == 0
-        return 1 if even else _definite(e.base)
+        return 1 if even else _known_sign(e.base)
     if e.is_Mul:
         product = 1
         for factor in e.args:
-            product *= _definite(factor)
+            product *= _known_sign(factor)
         return product
     if e.is_Add:
-        signs = set(map(_definite, e.args))
+        signs = set(map(_known_sign, e.args))
         return signs.pop() if len(signs) == 1 else 0
     return int(isinstance(e, sp.exp | sp.cosh | sp.sech | sp.Abs))
 

@@ -28,7 +28,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Definition:
-    """Letter that a text gives a meaning, with its formulas, several in a chain q = a b = c, and if a line uses it."""
+    """A letter that a text defines: its formulas, several for a chain q = a b = c, and if a line uses it."""
 
     name: str
     formulas: tuple[sp.Basic, ...]
@@ -128,7 +128,7 @@ class _Lines:
         return Text(tuple(lines), tuple(Definition(n, formulas, n in used) for n, formulas in found.items()))
 
     def line(self, node: Any) -> Any:
-        """Return the value of a side of a line, with what it uses counted."""
+        """Return the value of a side of a line, and note the defined letters in it as used."""
         builder = self.builder
         builder.within.append("")
         builder.uses.setdefault("", set())
@@ -144,7 +144,7 @@ class _Lines:
         for sign, side in zip(rest[::2], rest[1::2], strict=True):
             value = self.line(side)
             if sign.children[0].type == "EQUAL":
-                self.known(value, side)
+                self.refuse_unknown_rate(value, side)
                 found.append(Reading(str(label), value))
             else:  # in V' = a <= b it is V' that is at most b
                 left = value if left is None else left
@@ -154,7 +154,7 @@ class _Lines:
 
     def unnamed(self, tree: Tree, side: Any) -> list[Reading]:
         value = self.line(side)
-        self.known(value, side)
+        self.refuse_unknown_rate(value, side)
         return [Reading("", value)]
 
     def relation(self, tree: Tree, first: Any, *rest: Any) -> list[Reading]:
@@ -170,8 +170,8 @@ class _Lines:
             left = right
         return found
 
-    def known(self, value: Any, node: Any) -> None:
-        """Refuse a rate that no line gives."""
+    def refuse_unknown_rate(self, value: Any, node: Any) -> None:
+        """Refuse a value with a letter's rate, such as y1', for which the text has no line."""
         for name, symbol in self.builder.rates.items():
             if isinstance(value, sp.Basic) and value.has(symbol):
                 self.refuse(f'"{name}" stands in this line, and no line gives it; write it in the known letters', node)

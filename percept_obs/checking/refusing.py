@@ -56,7 +56,7 @@ class CannotRead(ValueError):
 
 
 def two_meanings(readings: Iterable[str], instead: str) -> str:
-    """Ask back: it can be read in more than one way."""
+    """Return a message that lists the ways to read a text, and what to write instead."""
     return f"this can be read as {' or as '.join(readings)}; {instead}"
 
 

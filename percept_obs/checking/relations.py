@@ -67,6 +67,6 @@ def _numbered(names: Iterable[str]) -> list[sp.Symbol]:
 
 
 def _free(pairs: Iterable[tuple[sp.Symbol, sp.Expr]], taken: Iterable[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
-    """Keep letters that have no other meaning: v1 of a linear motion is its input."""
+    """Return the definitions of those letters that mean nothing else here, as v1 does in a linear motion."""
     known = {key(s.name) for s in taken}
     return {s: e for s, e in pairs if key(s.name) not in known}

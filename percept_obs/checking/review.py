@@ -29,7 +29,7 @@ MARKS = {
 }
 CANNOT_BE_TOLD = "It cannot be told whether this is the same; write it closer to the usual form."
 DECIDING = 0.55 * SECONDS
-"""The rest of the time is left for printing."""
+"""Seconds for deciding and explaining; the rest of `SECONDS` is left for printing."""
 HINTS = ("which line", "which term", "which slip, and in which step")
 
 
@@ -147,7 +147,7 @@ class Review:
         return " " if self.right is False and not self.hints else MARKS[line.verdict]
 
     def _told(self, k: int, show: Callable[[sp.Basic], str]) -> Iterator[str]:
-        """Yield the sentences on a line."""
+        """Yield the sentences that the hints asked for so far show on a line."""
         line = self.lines[k]
         if line.verdict == Verdict.WRONG and self.hints > 1 and k in self.explanations:
             where, slips, steps = sentences(self.explanations[k], line.mine, show)

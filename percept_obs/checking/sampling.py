@@ -16,7 +16,9 @@ from percept_obs.checking.points import KINKED, NoValue, Point, key
 from percept_obs.checking.proving import powers
 
 PLACES, TRIALS, DIGITS, MANY_DIGITS = 24, 160, 60, 1200
+"""Places that are compared at least, and draws of them at most; digits of formulas in `WRITTEN_OUT`, and of others."""
 WRITTEN_OUT = (sp.Integral, sp.Derivative, sp.Sum)
+"""Expressions that are computed numerically, which takes long with many digits."""
 KINKS = (*KINKED, sp.Heaviside)
 _chance = random.SystemRandom()
 _SIGNS: dict[type, Callable[[Any], bool]] = {
@@ -30,7 +32,7 @@ _SIGNS: dict[type, Callable[[Any], bool]] = {
 
 
 class Place(Point):
-    """Real values of letters, and of expressions as far as all their parts are real, with many digits."""
+    """Real values of letters, and those of expressions in them, with many digits; NoValue where a part is not real."""
 
     def __init__(self, letters: dict[str, float], digits: int = DIGITS, real: bool = True) -> None:
         super().__init__(0, exact=True)
@@ -117,6 +119,7 @@ def places(*formulas: sp.Basic) -> Iterator[dict[str, float]]:
     for number in range(TRIALS):
         values: dict[str, float] = {}
         for letter in letters:
+            # every other place has ordinary values only, at which few formulas overflow
             draw = _chance.random() if number % 2 else 0
             if draw < 0.4:
                 value = _chance.uniform(-3, 3)
@@ -135,7 +138,7 @@ def places(*formulas: sp.Basic) -> Iterator[dict[str, float]]:
 
 
 def _allowed(letter: sp.Symbol, value: float) -> float:
-    """Return a value as the letter's assumptions want it."""
+    """Return the value, rounded or with another sign if the letter is an integer or has a sign."""
     value = float(round(value)) if letter.is_integer else value
     if letter.is_nonnegative or letter.is_nonpositive:
         value = abs(value) if letter.is_nonnegative else -abs(value)
@@ -148,6 +151,7 @@ def _move_to_a_border(values: dict[str, float], border: sp.Expr) -> None:
     letter = _chance.choice(sorted(border.free_symbols, key=str))
     name = key(letter.name)
     try:
+        # three values on a line: the expression is linear in the letter, and its zero follows
         at = [Place(values | {name: x})(border) for x in (0.0, 1.0, 2.0)]
     except NoValue:
         return
@@ -181,6 +185,7 @@ def region(good: Sequence[Place], bad: Sequence[Place], *formulas: sp.Basic) -> 
     """Return a condition that holds at good places and fails at bad ones, |y1| < pi/2; empty if none is seen."""
     if len(good) < 5 or len(bad) < 5:
         return ""
+    # conditions are looked for in letters and in arguments of functions, the shortest first
     inner = {a for e in formulas for f in e.atoms(sp.Function, sp.Pow) for a in (*f.args, f) if isinstance(a, sp.Expr)}
     letters = {s for e in formulas for s in e.free_symbols}
     constants = {abs(n) for e in formulas for n in e.atoms(sp.Rational)} | {sp.S(n) for n in (0, 1, sp.pi / 2, sp.pi)}
@@ -191,6 +196,7 @@ def region(good: Sequence[Place], bad: Sequence[Place], *formulas: sp.Basic) -> 
                 continue
             for sign, relation in ((1, "<"), (-1, ">")):
                 low, high = max(sign * x for x in inside), min(sign * x for x in outside)
+                # a single usual number between good and bad places is the border; of several it is not known which
                 between = {c for c in (*constants, *(-c for c in constants)) if low <= sign * float(c) <= high}
                 if low <= high and len(between) == 1:
                     return f"{shown} {relation} {between.pop()}".replace("**", "^").replace("*", " ")

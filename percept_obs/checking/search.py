@@ -22,12 +22,14 @@ ORDER = (
     *("sign", "left out", "letter", "exponent", "missing", "factor", "superfluous", "other letter", "left-out factor"),
     "replaced",
 )
-THROUGHOUT = ("throughout", "swapped", "sign throughout", "signs", "transpose", "twins", "twin")
+"""Kinds of slips, the likeliest first: of several changes that mend a line, the first one is named."""
+KINDS_IN_ALL_TERMS = ("throughout", "swapped", "sign throughout", "signs", "transpose", "twins", "twin")
+"""Kinds of slips that are made in all terms of a line."""
 
 
 @dataclass(frozen=True)
 class Spot:
-    """Term or sum in a formula, outside of functions: its place, its value, and how the formula grows with it."""
+    """Term or sum of a formula, outside of functions: its place, its values, and the formula's derivative by it."""
 
     path: tuple[int, ...]
     node: sp.Expr
@@ -37,7 +39,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class Search:
-    """Search for changes that mend one line, until a time on the clock."""
+    """Search for changes that mend one line, until the clock of this thread shows `until`."""
 
     mine: sp.Expr
     line: Line
@@ -90,6 +92,7 @@ class Search:
                     named = replace(slip, path=(*start, *slip.path), term=slip.term if slip.path else term)
                     found.append((after - before, named))
         whole = self.line.formula
+        # every term of the true formula may be missing, as it is written or multiplied out
         expanded = sp.expand(whole) if small(whole) else whole
         for term in dict.fromkeys((*sp.Add.make_args(expanded), *sp.Add.make_args(whole))):
             if (added := self.values(term)) is not None:
@@ -113,18 +116,19 @@ class Search:
             old = self.terms[slip.path[0] if self.mine.is_Add else 0] if slip.kind != "missing" else sp.S.Zero
             return bool(same_zeros(self.mine - old + slip.formula, self.line.formula))
         true = np.array([point(self.line.formula) for point in self.places])
+        # an equation or inequality is right up to a number, so its ratio to the true one must be constant
         changed = true - self.lacking + added
         return bool(np.all(changed != 0)) and close(changed * true[0], true * changed[0])
 
     def single(self) -> Slip | None:
         """Return the plainest single change that mends the formula."""
         # of a relation, which is the same times a number, as it is written if that will do
-        ways = [_named(slip) for added, slip in self.changes if close(added, self.lacking)]
+        ways = [_as_mistake(slip) for added, slip in self.changes if close(added, self.lacking)]
         for added, slip in self.changes if not ways and self.line.kind != VALUE else ():
             if self.over and self.line.kind == ZEROS:
                 break
             if self.mends(added, slip):
-                ways.append(_named(slip))
+                ways.append(_as_mistake(slip))
         # a term that is there only once all is multiplied out is named last
         written = [Slip("missing", sp.S.Zero, t, (), t, t) for t in sp.Add.make_args(self.line.formula)]
         late = [slip for slip in ways if slip.kind == "missing" and slip not in written]
@@ -144,6 +148,7 @@ class Search:
         one, whole = self.values(u), self.values(self.mine)
         found: list[Spot] = []
         for path, node in takewhile(lambda _: not self.over, term_places(self.mine)):
+            # outside of functions the formula is linear in the node, so one difference gives its derivative
             moved, now = self.values(put(self.mine, path, node + u)), self.values(node)
             if moved is not None and now is not None and one is not None:
                 found.append(Spot(path, node, now, (moved - whole) / one))
@@ -167,16 +172,18 @@ class Search:
         for spot in self.spots:
             path, node = spot.path, spot.node
             with np.errstate(all="ignore"):
+                # a wrong factor turns the node v into v r, and what lacks is outer v (r - 1)
                 ratio = self.lacking / spot.outer / spot.value + 1
             if not np.all(np.isfinite(ratio)):
                 continue
             number = Fraction(float(ratio[0].real)).limit_denominator(1000)
             if close(ratio, float(number) + 0 * ratio) and number != 1:
                 (slip,) = factored(node, replace(MENDS, factors=(sp.Rational(number.numerator, number.denominator),)))
-                yield _named(replace(slip, path=path))
+                yield _as_mistake(replace(slip, path=path))
             elif _rounded(ratio) in self.ratios:
                 right, wrong = self.ratios[_rounded(ratio)]
                 letter = -right if right.could_extract_minus_sign() else right
+                # a factor that is missing or one too many has 1 on the other side
                 if 1 in (letter, wrong):
                     kind = "left-out factor"
                 else:
@@ -187,6 +194,7 @@ class Search:
     def missing_inside(self) -> Iterator[Slip]:
         """Yield terms of the true formula that are missing in one of my brackets."""
         sums = [node for node in sp.preorder_traversal(self.line.formula) if node.is_Add]
+        # a bracket may have been multiplied out, so that its terms are looked for in both ways
         terms = dict.fromkeys(chain.from_iterable((*e.args, *(sp.expand(e).args if small(e) else ())) for e in sums))
         known = {_rounded(c * v): c * e for e in terms for c in (-1, 1) if (v := self.values(e)) is not None}
         for spot in self.spots:
@@ -208,6 +216,7 @@ class Search:
             yield Slip("sign", mine, true, path, mine, changed)
         elif quotient.is_Symbol:
             yield Slip("left-out factor", sp.S.One, quotient, path, mine, changed)
+        # the part has a term too many and one too few: perhaps one term with a wrong letter
         if len(lost) == 2:
             known = {t.as_coeff_Mul()[1] for t in sp.Add.make_args(mine)}
             lacking, extra = sorted(lost, key=lambda t: t.as_coeff_Mul()[1] in known)
@@ -242,6 +251,7 @@ class Search:
         """Return two changes that mend the formula together: in different terms, or in one."""
         if self.line.kind != VALUE:
             return ()
+        # two changes in different terms add up: look the rest of each up by its rounded values, not all pairs
         by_value: dict[tuple[float, ...], list[Slip]] = {}
         for added, slip in self.changes:
             by_value.setdefault(_rounded(added), []).append(slip)
@@ -249,7 +259,8 @@ class Search:
         for added, slip in self.changes:
             for other in by_value.get(_rounded(self.lacking - added), ()):
                 if other is not slip and (not slip.path or not other.path or slip.path[0] != other.path[0]):
-                    ways.append((_named(slip), _named(other)))
+                    ways.append((_as_mistake(slip), _as_mistake(other)))
+        # a term too many and one that is missing are one term replaced, which is told only if nothing else mends
         plain_ways = [two for two in ways if {slip.kind for slip in two} != {"superfluous", "missing"}]
         if plain_ways:
             best = min(plain_ways, key=lambda two: sum(ORDER.index(slip.kind) for slip in two))
@@ -276,7 +287,7 @@ class Search:
                         # the second one's place is that of a term which the first one has changed, or moved
                         paths = first.path, place_of(second.term, term) if second.path else ()
                         yield tuple(
-                            _named(replace(slip, path=(*start, *path), term=slip.term if slip.path else term))
+                            _as_mistake(replace(slip, path=(*start, *path), term=slip.term if slip.path else term))
                             for slip, path in zip((first, second), paths, strict=True)
                         )
 
@@ -297,7 +308,7 @@ def _other_functions(term: sp.Expr) -> Iterator[Slip]:
 
 
 def _as_a_letter(one: Slip, other: Slip) -> Iterator[tuple[Slip]]:
-    """Yield one wrong letter where the wrong term was merged with another one or cancelled it."""
+    """Yield two slips as one wrong letter, which made its term equal to another one or cancel it."""
     for lost, merged in ((one, other), (other, one)):
         wrong = merged.before - merged.after
         if lost.kind == "missing" and merged.kind in ("missing", "factor", "superfluous"):
@@ -318,6 +329,6 @@ def _rounded(values: Values) -> tuple[float, ...]:
     return tuple(np.round(values, 7) + 0.0)
 
 
-def _named(slip: Slip) -> Slip:
-    """Rename a mend: a term to be dropped was superfluous."""
+def _as_mistake(slip: Slip) -> Slip:
+    """Return a change as the mistake that it mends: a term that must be dropped was superfluous."""
     return replace(slip, kind="superfluous") if slip.kind == "dropped" else slip

@@ -109,7 +109,7 @@ def slips_in(node: sp.Basic, siblings: Siblings, moves: Moves) -> Iterator[Slip]
 
 
 def factored(term: sp.Expr, moves: Moves) -> list[Slip]:
-    """Return a term with another sign, with another factor, and dropped."""
+    """Return the slips of a whole term: another sign, another factor, or the term dropped."""
     kinds = {-1: "sign", 0: "dropped"}
     return [Slip(kinds.get(c, "factor"), term, c * term, (), term, c * term) for c in moves.factors]
 

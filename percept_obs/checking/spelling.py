@@ -22,7 +22,7 @@ from percept_obs.validation import write_whole
 GREEK = """alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon
 phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"""
 ACCENTS = {"\u0302": "hat", "\u0304": "bar", "\u0307": "dot", "\u0303": "tilde"}
-_OVER = {"hat": "hat", "bar": "bar", "dot": "dot", "tilde": "tilde"} | {
+_ACCENT_COMMANDS = {"hat": "hat", "bar": "bar", "dot": "dot", "tilde": "tilde"} | {
     "widehat": "hat",
     "widetilde": "tilde",
     "overline": "bar",
@@ -42,7 +42,7 @@ _RELATION = re.compile(r"[=<>]|\\(neq?|leq?|geq?|lt|gt|equiv|triangleq|coloneqq)
 _FORMULA = re.compile(r"[+*/^=<>()\[\]{}&\\]|(^|\s)-|-(\s|$)|[\d_']\w*\s+\w*[\d_']")
 _SIGN_ALONE = re.compile(r"[\s$`\\()\[\]]*([-+*/^]|plus|minus|times|over)[\s$`\\()\[\]]*")
 _VERB = re.compile(r"\s*([Ii]s|[Aa]re|[Hh]ave|[Dd]enotes?|[Ff]ollows|[Gg]ives?|[Yy]ields?|[Tt]hat|[Ww]hich)\b")
-_SAID = re.compile(r"\\(text|textrm|mbox|mathrm)\s*\{([^{}]*)\}")
+_TEXT_COMMAND = re.compile(r"\\(text|textrm|mbox|mathrm)\s*\{([^{}]*)\}")
 _WORDS_OF_CASES = re.compile(r"\s*(for|if|when|otherwise|else)[,.]?\s*|\s*\w+\s*")
 _NAMED_BY_COLON = re.compile(r"[\s{]*[A-Za-z]\w*(dot|')\s*:(?!=)[^=<>]*")
 
@@ -108,7 +108,7 @@ def _blank(text: str) -> str:
 
 
 def _delimited(text: str) -> str:
-    """Blank delimiters, and what stands outside of them where that has no relation."""
+    """Return a text with blanks for delimiters such as $, and for all outside of them unless a formula stands there."""
     inside: list[tuple[int, int]] = []
     opened: tuple[int, str] | None = None
     marks: list[tuple[int, int]] = []
@@ -171,16 +171,16 @@ def _line(line: str) -> str:
         line = line.replace(":", "=", 1)
         if line.lstrip().startswith("{"):
             line = line.replace("{", " ", 1).rstrip().removesuffix("}")
-    line = _SAID.sub(_said, line)
+    line = _TEXT_COMMAND.sub(_text_command_as_words, line)
     words = re.split(r"(\s+)", line)
-    line = "".join(_without_stop(word) for word in words)
+    line = "".join(_line_end_for_stop(word) for word in words)
     if not _terminal("PROSE").search(line) and "\n" not in line:
         return line
-    return "".join(_parted(line))
+    return "".join(_formulas_of_sentence(line))
 
 
-def _parted(line: str) -> Iterator[str]:
-    """Yield a sentence with its words as ends of lines, and without parts that are no formulas."""
+def _formulas_of_sentence(line: str) -> Iterator[str]:
+    """Yield the parts of a sentence: formulas, each on a line of its own, and blanks for the words between them."""
     found = [(each.start(), each.end()) for each in _terminal("PROSE").finditer(line)]
     for (_, start), (end, after) in pairwise([(0, 0), *found, (len(line), len(line))]):
         part = line[start:end]
@@ -194,16 +194,16 @@ def _parted(line: str) -> Iterator[str]:
         yield "\n" * (after > end) + " " * (after - end - 1)
 
 
-def _said(found: re.Match[str]) -> str:
-    """Keep words of cases and of functions as they are; others become words of a sentence."""
+def _text_command_as_words(found: re.Match[str]) -> str:
+    """Return text{...} unchanged if it stands in cases or names a function, else its words as those of a sentence."""
     if _WORDS_OF_CASES.fullmatch(found[2]) and not _terminal("PROSE").search(found[2]):
         return found[0]
     head = found[0].index("{") + 1
     return "\n" + " " * (head - 1) + found[2] + " "
 
 
-def _without_stop(word: str) -> str:
-    """Part sentences: a stop, a colon or another mark at the end of a word, but no decimal point."""
+def _line_end_for_stop(word: str) -> str:
+    """Return a word with an end of line for the stop, colon or other mark that ends it; decimal points stay."""
     bare = word.rstrip(",")
     if bare.endswith((".", "!", "?")) and not bare[:-1].isdigit() and not bare.endswith(("\\right.", "\\left.")):
         return bare[:-1] + "\n" + word[len(bare) :]
@@ -218,9 +218,9 @@ def name_of(token: str) -> str:
     text = re.sub(r"\s*\^\s*(\{\s*((\\prime\s*)+)\}|\\prime)", lambda f: "'" * f[0].count("prime"), token)
     text = re.sub(r"\\(mathbf|boldsymbol|bm|mathit|vec|mathcal|mathsf|pmb)(?![A-Za-z])", "", text)
     text = re.sub(r"\\var(?=[a-zA-Z])", r"\\", text)
-    over = re.findall(rf"\\({'|'.join(_OVER)})(?![A-Za-z])", text)
-    accents = [*(_OVER[each] for each in over), *(ACCENTS[c] for c in text if c in ACCENTS)]
-    plain = re.sub(rf"\\({'|'.join(_OVER)})(?![A-Za-z])|[{marks}',]", "", text)
+    over = re.findall(rf"\\({'|'.join(_ACCENT_COMMANDS)})(?![A-Za-z])", text)
+    accents = [*(_ACCENT_COMMANDS[each] for each in over), *(ACCENTS[c] for c in text if c in ACCENTS)]
+    plain = re.sub(rf"\\({'|'.join(_ACCENT_COMMANDS)})(?![A-Za-z])|[{marks}',]", "", text)
     return key(plain + "".join(accents) + "dot" * text.count("'"))
 
 

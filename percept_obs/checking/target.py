@@ -135,7 +135,7 @@ class Target:
         return tuple(convention for convention in _conventions() if set(convention.changes) <= letters)
 
     def asked(self, text: Text) -> Target:
-        """Return the target that a text means: of its names, or with a gain that is 0 by default; else itself."""
+        """Return the target that a text is about: that of its names, one with gains that are 0 by default, or this."""
         names = [line.name for line in text.lines if line.name in self.others]
         elsewhere = not any(line.name in self.rows for line in text.lines)
         if names and elsewhere:
@@ -185,7 +185,7 @@ class Target:
 
     @property
     def known(self) -> tuple[dict[str, Any], list[str]]:
-        """Letters that are read, and further names for the left of a line."""
+        """Letters that may be typed, by their keys, and names that may stand on the left of a line besides."""
         extra = {s.name: s for c in self.conventions for e in c.changes.values() for s in e.free_symbols}
         matrices = {key(m.name): m for m in self.matrices if isinstance(m, sp.MatrixSymbol)}
         named = {key(each.letter.name): each for each in intermediates(line.formula for line in self.lines)}
@@ -223,6 +223,7 @@ def _entry_by_entry(reading: Reading) -> Iterable[Reading]:
 
 
 _LABELS = ("w", "wT", "phi", "g", "J", "Jm", "x", "x1", "x2", "xdot", "x1dot", "x2dot", "y", "ydot", "nablal")
+"""Names that may stand on the left of any line."""
 
 
 def _neighbours(letters: set[sp.Symbol]) -> Iterable[sp.Symbol]:

@@ -101,12 +101,12 @@ def _(thing: PerspectiveSystem) -> Target:
     slope = dict.fromkeys("FJ", partial(_jacobian, thing.jacobian, pool))
     known = relations.of_system(thing)
     return Target(
-        lines, pool, thing.derivation, relations=known, elsewhere=partial(_on_others, thing), others=moves | slope
+        lines, pool, thing.derivation, relations=known, elsewhere=partial(_other_surfaces, thing), others=moves | slope
     )
 
 
-def _on_others(system: PerspectiveSystem) -> dict[str, tuple[Line, ...]]:
-    """Return the rates on other surfaces that have no letters of their own."""
+def _other_surfaces(system: PerspectiveSystem) -> dict[str, tuple[Line, ...]]:
+    """Return the lines of the rates on all other surfaces without parameters, by the surfaces' names."""
     others = {s.name: s for make in SURFACES if not (s := make()).parameters and not s.fits(system.surface)}
     systems = {name: replace(system, surface=surface) for name, surface in others.items()}
     return {name: _rates(other.coordinates, other.rate) for name, other in systems.items()}

@@ -20,8 +20,8 @@ TWINS = (("v_c", "v_p"), ("y", "yhat"))
 Candidate = tuple[str, sp.Basic, sp.Basic, sp.Expr]
 
 
-def elsewhere(search: Search, row: int, target: Target) -> str:
-    """Say where a line belongs that is right, but not here; empty if nowhere."""
+def confusion(search: Search, row: int, target: Target) -> str:
+    """Return a sentence on what a line was confused with: another line, surface, direction or unit; else ""."""
     line, mine = search.line, search.mine
     if line.kind == INEQUALITY:
         turned = proportional(mine, -line.formula, positive=True)
@@ -47,18 +47,19 @@ def elsewhere(search: Search, row: int, target: Target) -> str:
     return ""
 
 
-def throughout(search: Search) -> Slip | None:
-    """Return one change in all terms: a transpose, signs of letters, a letter for another, two letters swapped."""
+def change_of_all_terms(search: Search) -> Slip | None:
+    """Return the change in all terms that mends a line: a transpose, signs, a letter for another, or two swapped."""
     true = search.values(search.line.formula)
-    for kind, before, after, changed in takewhile(lambda _: not search.over, _everywhere(search)):
+    for kind, before, after, changed in takewhile(lambda _: not search.over, _changes_of_all_terms(search)):
         if close(search.values(changed), true):
             return Slip(kind, before, after, (), search.mine, changed)
     return None
 
 
-def _everywhere(search: Search) -> Iterator[Candidate]:
+def _changes_of_all_terms(search: Search) -> Iterator[Candidate]:
     mine = search.mine
     used = sorted(mine.free_symbols, key=str)
+    # a transposed matrix is likelier than several wrong indices, so it is tried first
     flips = {a: b for a in used if (b := _transposed(a, search.letters))}
     if len(flips) > 1:
         yield "transpose", *next(iter(flips.items())), mine.xreplace(flips)
@@ -84,8 +85,8 @@ def _everywhere(search: Search) -> Iterator[Candidate]:
                     yield "swapped", a, b, mine.xreplace({a: b, b: a})
 
 
-def swapped(search: Search) -> Slip | None:
-    """Return the bracket in which two letters, or a sine and a cosine, are swapped."""
+def swap_in_a_bracket(search: Search) -> Slip | None:
+    """Return the swap of two letters, or of a sine and a cosine, in one bracket that mends a line."""
     for spot in takewhile(lambda _: not search.over, search.spots):
         if not spot.node.is_Add:
             continue
@@ -100,8 +101,8 @@ def swapped(search: Search) -> Slip | None:
     return None
 
 
-def repeated(search: Search) -> tuple[Slip, ...]:
-    """Return a slip in a part that stands in several places, as a letter of one's own does."""
+def slip_in_all_copies(search: Search) -> tuple[Slip, ...]:
+    """Return a slip in a part that stands in several places, as a letter of one's own does, mended in all of them."""
     siblings = siblings_in(search.letters | symbols_in(search.mine))
     true = search.values(search.line.formula)
     counts: dict[sp.Basic, int] = {}

@@ -48,7 +48,7 @@ class Words(Notation):
         return found
 
     def _leniently(self, change: Callable[[list[Token]], list[Token]], tokens: list[Token]) -> list[Token]:
-        """Change tokens, or those words that can be, and leave what is refused as it is."""
+        """Return changed tokens; if that is refused, those with the words changed that can be."""
         with suppress(CannotRead):
             return change(tokens)
         if change != self._told:
@@ -115,7 +115,7 @@ class Words(Notation):
         return out
 
     def _applied(self, before: Sequence[Token], inner: Sequence[Token], first: dict[str, list[str]]) -> str:
-        """Return the letter that a letter with arguments stands for; empty if they are a factor."""
+        """Return the letter that x(t) or g(x1, xhat2) stands for, x or ghat; empty if the bracket is a factor."""
         letter = next((str(t) for t in reversed(before[-6:]) if t.type == "NAME" and t != "T"), "")
         text = "".join(map(str, inner))
         if re.fullmatch(r"ti\^?\{?\^?\{?[+-]\}?\}?", text):

@@ -16,6 +16,7 @@ from percept_obs.compile.kernels import Language
 from percept_obs.compile.machine_code import machine_code
 
 _COMPILING = Lock()
+"""Held while a loop is compiled, so that threads that ask for the same one do not compile it twice."""
 _contiguous = partial(np.ascontiguousarray, dtype=float)
 
 
@@ -39,7 +40,7 @@ class Batch:
 
 
 def run_batch(loop: BatchLoop, batch: Batch, tolerance: float, late: int, language: Language) -> Array:
-    """Run the equations for a batch; return statistics of its L runs, shape (L, number of `COLUMNS` + 2 a mean).
+    """Run a batch; return a row of statistics for each of its L runs: a column for each of `COLUMNS`, two a mean.
 
     Errors count from the sample `late` on.  The columns are: the last sample outside of the tolerance, -1 if there is
     none; what is judged and the error at the last sample; sum of squares and largest value of the error; resets; the
@@ -47,6 +48,7 @@ def run_batch(loop: BatchLoop, batch: Batch, tolerance: float, late: int, langua
     the largest change of its distance between samples; and of each mean the sum and the number of values.
     """
     runs, columns = len(batch.start), len(COLUMNS) + 2 * len(loop.statistics.means)
+    # compiled code has a fixed width; numpy takes all runs at once
     width = BATCH if language == "numba" else max(runs, 1)
     filled = -(-runs // width) * width
     rows = np.minimum(np.arange(filled), runs - 1)  # the last run stands in for those that fill up the last batch

@@ -32,6 +32,7 @@ def vectorised(
     def evaluate(*arrays: ArrayLike) -> list[Array]:
         columns = [np.asarray(a, dtype=float) for a in arrays]
         found = np.empty((len(expressions), *np.broadcast_shapes(*(column.shape for column in columns))))
+        # an expression without symbols gives one number, which is spread over the arrays' shape
         for k, result in enumerate(function(*columns, *constants)):
             found[k] = result
         return list(found)
@@ -105,5 +106,6 @@ def executed(text: str, **names: Any) -> Callable[..., Any]:
     """Python function that a text defines last; it may use `math` and the names that are passed."""
     namespace: dict[str, Any] = {"math": math} | names
     exec(compile(text, "<printed>", "exec"), namespace)
+    # helpers stand before the function that uses them, which so is the last one
     *_, function = (value for value in namespace.values() if isinstance(value, FunctionType))
     return function

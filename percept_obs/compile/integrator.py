@@ -35,10 +35,10 @@ PLACES = tuple(map(INSTANTS.index, NODES))
 """Index of the instant of each stage."""
 
 EACH = len(INSTANTS) - 1
-"""Rows that a step adds to a table of known signals; its end is the next one's start."""
+"""Rows of a table of known signals for each step: its instants but the last, which is the next step's first."""
 
 LONGEST_STEP = 0.01
-"""Longest step, in seconds, with which an observer is integrated unless asked otherwise."""
+"""Longest step in seconds with which an observer is integrated, unless another one is asked for."""
 
 PLANT_STEP = 0.0025
 """Longest step, in seconds, with which the page integrates a motion that varies; a constant one it sums exactly."""
@@ -62,11 +62,14 @@ def step_grid(times: Array, longest: float) -> tuple[Array, Indices]:
     """
     intervals = np.diff(times)
     limit(float((intervals / longest).sum()), "steps", "take longer steps or a shorter time")
+    # times may repeat: such an interval of no length gets no step
     counts = np.where(intervals > 0, np.maximum(1, np.ceil(intervals / longest - STEP_ROUNDING)), 0).astype(int)
     index = np.concatenate([[0], np.cumsum(counts)])
     owner = np.repeat(np.arange(len(counts)), counts)
+    # number of each step within its interval, from 1
     inside = np.arange(index[-1]) - index[owner] + 1
     grid = np.concatenate([times[:1], times[owner] + intervals[owner] * (inside / counts[owner])])
+    # the given times themselves, not what rounding makes of them
     grid[index] = times
     return grid, index
 

@@ -10,7 +10,7 @@ import sympy as sp
 
 
 class Intermediate(sp.Function):
-    """A function that formulas carry by its name, such as a root, for written out it would make each of them long.
+    """A function, such as a root, that formulas name instead of writing it out, which would make each of them long.
 
     A subclass defines its `value`, and an `equation` that it solves, from which its derivatives follow in terms of
     itself, without another root.
@@ -37,7 +37,7 @@ class Intermediate(sp.Function):
 
     @staticmethod
     def equation(*letters: sp.Expr) -> sp.Expr:
-        """Return an expression that is 0, given itself and its arguments."""
+        """Return an expression in the function's value and arguments that is 0 where the value is right."""
         raise NotImplementedError
 
     @classmethod
@@ -93,6 +93,7 @@ def intermediates(expressions: Iterable[sp.Basic]) -> list[Intermediate]:
 def _inside(expressions: Iterable[sp.Basic]) -> Iterator[Intermediate]:
     found = sp.Tuple(*expressions).atoms(Intermediate)
     for each in sorted(found, key=sp.default_sort_key):
+        # inner results first, so that each one stands after those that it needs
         yield from _inside([each.written_out])
         yield each
 
@@ -124,6 +125,7 @@ def common_subexpressions(
     first: list[tuple[sp.Symbol, sp.Expr]] = []
     for each in intermediates(expressions):
         shared, (value,) = sp.cse([each.written_out.xreplace(known)], symbols=names)
+        # later results may use this one by its name
         known[each] = next(names)
         first += [*shared, (known[each], value)]
     shared, left = sp.cse([e.xreplace(known) for e in expressions], symbols=names)

@@ -88,11 +88,13 @@ def solve(
         resets: Any = [0.0] * count
         try:
             diverged = _python(equations)(*(block.tolist() for block in inputs), varying, states, resets)
+        # Python raises where numba returns inf or NaN: the first row that is not filled is where it diverged
         except (ArithmeticError, ValueError):
             diverged = next(k for k in range(count) if math.isnan(states[size * k]))
     else:
         states, resets = np.empty(size * count), np.zeros(count, dtype=bool)
         diverged = _compiled(equations)(*inputs, varying, states, resets)
+        # np.empty holds what was in memory before
         states[size * diverged if diverged >= 0 else size * count :] = np.nan
     return Trace(
         np.asarray(states).reshape(count, size),

@@ -53,6 +53,7 @@ def _source(
     text, fixed, arguments = Text("batch"), dict[sp.Expr, sp.Symbol](), [f"table{k}" for k in range(len(tables))]
     places = {s: f"{name}[i, {k}]" for name, of in zip(arguments, tables, strict=True) for k, s in enumerate(of)}
     names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate((*places, *constants))}
+    # what depends on constants alone is computed once, before the loop
     left = [take_out(e.xreplace(names), {names[symbol] for symbol in constants}, fixed) for e in expressions]
     with text.function("run", [*arguments, "numbers", "values"]):
         for k, symbol in enumerate(constants):

@@ -28,7 +28,7 @@ FUNCTIONS = (
 
 BUILT = (sp.Add, sp.Mul, sp.Symbol, sp.Abs, sp.sign, sp.NumberSymbol, sp.Piecewise, ExprCondPair, Boolean, Intermediate)
 KNOWN = (*BUILT, *FUNCTIONS)
-"""Expressions that are printed alike, besides numbers and some powers."""
+"""Kinds of expressions that mean the same in every language, besides numbers and some powers."""
 
 
 class NotCompilable(ValueError):
@@ -40,6 +40,7 @@ def refuse_what_differs(expressions: Sequence[sp.Basic]) -> None:
     named = [each.written_out for each in intermediates(expressions)]
     for expression in (*expressions, *named):
         for node in sp.preorder_traversal(expression):
+            # languages raise to other powers with different rounding, or cannot at all
             power_fits = isinstance(node, sp.Pow) and (2 * node.exp).is_Integer and abs(node.exp) <= LARGEST_PRODUCT
             finite = node.is_number and node.is_finite and (node.is_Rational or node.is_Float)
             if not (power_fits or finite or isinstance(node, KNOWN)):
@@ -64,6 +65,7 @@ class _Printer(PythonCodePrinter):
     def _print_Pow(self, expr: sp.Pow, **_: Any) -> str:
         base, exponent = expr.base, expr.exp
         factors = [self.parenthesize(base, PRECEDENCE["Pow"])] * int(abs(exponent))
+        # half powers are products times a root
         if not exponent.is_Integer:
             factors.append(f"{self.notation['math']}.sqrt({self._print(base)})")
             if len(factors) == 1:
@@ -102,6 +104,7 @@ class _Printer(PythonCodePrinter):
         if condition != sp.true:
             raise NotCompilable(f"{expr} is not defined everywhere; end it with (expression, True)")
         text = self._print(last)
+        # the first condition that holds counts, so that the last branch is the innermost choice
         for branch, condition in reversed(branches):
             text = self._choice(self._print(condition), self._print(branch), text)
         return text
@@ -155,21 +158,21 @@ class Text:
         self.lines.append(("    " if self.python else "  ") * self.depth + text)
 
     def assign(self, name: str, expression: str) -> None:
-        """Assign a local variable."""
+        """Add a line that assigns a local variable."""
         self.assigned[name] = None
         self.store(name, expression)
 
     def copy(self, targets: str, values: str, count: int) -> None:
-        """Assign values0, values1, ... to targets0, targets1, ..."""
+        """Add lines that assign values0, values1, ... to targets0, targets1, ..."""
         for k in range(count):
             self.assign(f"{targets}{k}", f"{values}{k}")
 
     def store(self, place: str, expression: str) -> None:
-        """Assign an entry of an array."""
+        """Add a line that assigns an entry of an array."""
         self.line(f"{place} = {expression}" + ("" if self.python else ";"))
 
     def formulas(self, expressions: Sequence[sp.Expr], targets: str) -> None:
-        """Assign the expressions to targets0, targets1, ..., common subexpressions first."""
+        """Add lines that assign expressions to targets0, targets1, ..., after their common subexpressions."""
         key = tuple(expressions)
         if key not in self.printed:
             shared, results = common_subexpressions(expressions, sp.numbered_symbols("c", real=True))
@@ -179,7 +182,7 @@ class Text:
             self.assign(name, formula)
 
     def leave(self, value: str) -> None:
-        """Return a value."""
+        """Add a line that returns a value."""
         self.line(f"return {value}" + ("" if self.python else ";"))
 
     @contextmanager

@@ -23,6 +23,7 @@ def slope(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Expre
     (2*d_x*x,)
     """
     gradient = sp.Matrix(expressions).jacobian(symbols)
+    # a sign's derivative is a delta at its jump, which no step can resolve
     smooth = gradient.applyfunc(lambda entry: entry.replace(sp.DiracDelta, lambda *_: sp.S.Zero))
     return tuple(smooth * sp.Matrix(slopes(symbols)))
 

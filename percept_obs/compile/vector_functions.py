@@ -10,7 +10,7 @@ import numpy as np
 
 
 def where(condition: bool, this: float, that: float) -> float:
-    """Return one of two values."""
+    """Return the first value where the condition is true, else the second; both have been computed."""
     return this if condition else that
 
 
@@ -20,7 +20,7 @@ def some(condition: bool) -> bool:
 
 
 def parts(z: float) -> tuple[float, float, float]:
-    """2^k, P and Q with e^(2z) = 2^k (Q + P) / (Q - P), for z = k log(2) / 2 + r from -354 to 354.
+    """Return 2^k, P and Q with e^(2z) = 2^k (Q + P) / (Q - P), for z = k log(2) / 2 + r from -354 to 354.
 
     P / Q is tanh(r) by Lambert's continued fraction, r / (1 + r^2 / (3 + r^2 / (5 + ... r^2 / 13))).
     """
@@ -37,12 +37,14 @@ def parts(z: float) -> tuple[float, float, float]:
 
 def exp(x: float) -> float:
     """e^x, 0 below 3e-308 and infinite above 8e307."""
+    # arguments are cut off where `parts` would leave the range of a float's exponent
     power, P, Q = parts(where(x < -708.0, -354.0, where(x > 709.0, 354.5, x / 2.0)))
     return where(x > 709.0, math.inf, where(x < -708.0, 0.0, power * ((Q + P) / (Q - P))))
 
 
 def tanh(x: float) -> float:
     """The hyperbolic tangent, (e^(2x) - 1) / (e^(2x) + 1)."""
+    # beyond 22 tanh is 1 to the last bit
     power, P, Q = parts(where(x < -22.0, -22.0, where(x > 22.0, 22.0, x)))
     more, less = power + 1.0, power - 1.0
     return (less * Q + more * P) / (more * Q + less * P)

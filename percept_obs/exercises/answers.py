@@ -40,7 +40,7 @@ class Attempt:
         return self.reply
 
     def hint(self, number: int) -> Attempt:
-        """Return the reply with the reason why it has no hint, as a review would give one; it is about no formula."""
+        """Return the reply with a note that it has no hints, for only a review of a formula has some."""
         why = NO_HINT if self.right is None else "This reply says all that there is: it has no hints."
         return replace(self, reply=f"{self.reply} {why}")
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 LARGEST = 50_000_000
-"""Bytes of a notebook."""
+"""Largest size of a notebook in bytes."""
 
 POINTS = " (points)"
 """End of the names of columns that a teacher fills in."""
@@ -143,7 +143,7 @@ def _mark(name: str, jobs: Sequence[Job]) -> None:
 
 
 def harmless(entry: Any) -> Any:
-    """Return an entry that every file takes, and no spreadsheet for a formula."""
+    """Return a table's entry made safe: odd characters escaped, and a quote before what a spreadsheet might run."""
     if not isinstance(entry, str):
         return entry
     plain = UNFIT.sub(lambda found: found[0].encode("unicode_escape").decode(), entry[:LONGEST])
@@ -207,7 +207,7 @@ def students(folder: Path, roster: Path | None) -> list[Student]:
 
 
 def read(file: Path) -> tuple[str, dict[str, str], str, str]:
-    """Return the name of a notebook that somebody wrote, its cells, whose copy it says to be, and its outputs.
+    """Return a handed-in notebook's name, its cells by their ids, the student that it names, and its outputs.
 
     A ValueError says why it is none of the course's.
     """
@@ -237,7 +237,7 @@ def _ids() -> dict[str, set[str]]:
 
 
 def blank(name: str) -> dict[str, Any]:
-    """Return the columns of a notebook that was not handed in."""
+    """Return a table's columns for a notebook that was not handed in."""
     columns: dict[str, Any] = {}
     for task in (task for task, *_ in programs(notebooks()[name]) if task):
         label = f"{name[:2]} {task}"
@@ -289,7 +289,7 @@ def compared(student: str, name: str, cells: Mapping[str, str], said: str, run_c
 
 
 def _plain(text: str) -> str:
-    """Return a cell without what a student may add: a hint that is asked for behind the last bracket."""
+    """Return a cell's text without a call of `hint` at its end, which a student may add."""
     return re.sub(r"\.hint\(\d\)\s*$", "", text.replace("\r\n", "\n").strip())
 
 

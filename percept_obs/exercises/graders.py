@@ -66,7 +66,7 @@ def _marked(cell: Notebook, source: str, **marks: Any) -> dict[str, Any]:
 
 
 def _for_otter(cell: Notebook, onward: Sequence[Notebook]) -> Iterator[dict[str, Any]]:
-    """Yield a cell between Otter's marks; of a task, the next solution onward tells the name and who marks it."""
+    """Yield a cell between Otter's marks; a task's have the name and kind of the next solution among cells `onward`."""
     part, source, name = _part(cell), "".join(cell["source"]), cell.get("id", "")
     end = _raw(f"{name}-end", "# END QUESTION")
     if part == "task":

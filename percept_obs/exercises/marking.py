@@ -19,11 +19,12 @@ from typing import Any
 from percept_obs.exercises.copies import CHECK
 
 LONGEST = 4000
-"""Characters of an answer."""
+"""Largest number of characters of an answer."""
 
 LIMITS = {"RLIMIT_CPU": 120, "RLIMIT_AS": 8 << 30, "RLIMIT_FSIZE": 1 << 24, "RLIMIT_NOFILE": 256}
 """Seconds of processor, bytes of memory and of a file, and open files of a student's program."""
 SECONDS = 600
+"""Longest time that a student's program may run, whether it computes or waits."""
 
 CHILD = """
 import ctypes, json, resource, sys

@@ -23,7 +23,7 @@ FOLDED = re.compile(r"<details><summary>.*?</summary>(.*?)</details>", re.DOTALL
 
 UNWRITTEN = "Answer first, in your own words: put a sentence in quotes in the place of the dots. Then run this cell."
 LEAST = 3
-"""Words of an answer."""
+"""Least number of words of an answer."""
 
 
 def notebooks() -> dict[str, Any]:

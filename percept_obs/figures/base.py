@@ -122,7 +122,7 @@ def figure(refuses: str) -> Callable[[Callable[P, Drawing]], Callable[P, Figure]
                 axes.extend((yield from guarded(*args, **kwargs)))
 
             text = " ".join(filter(None, sentences()))
-            return Figure(whole(axes[0]), tuple(axes), text)
+            return Figure(root_figure(axes[0]), tuple(axes), text)
 
         signature = inspect.signature(draw)
         vars(drawn)["__signature__"] = signature.replace(return_annotation="Figure")
@@ -160,8 +160,8 @@ def canvases(axes: Sequence[Axes] | None, parts: Sequence[str], height: float, *
     return found
 
 
-def whole(ax: Axes) -> Any:
-    """Return the figure that the axes are in, at last."""
+def root_figure(ax: Axes) -> Any:
+    """Return the figure of the axes, even if they are in a subfigure."""
     return ax.get_figure(root=True)
 
 

@@ -24,31 +24,27 @@ NARROWEST = 0.4
 """Least ratio of the sides of a picture in space or in the image."""
 
 
-def limits(firm: ArrayLike, loose: ArrayLike = (), reach: float = 2.0) -> tuple[float, float]:
-    """Return the ends of an axis that shows all firm values, which must be seen, and of the loose ones those nearby.
-
-    A true course is firm, an estimate that may run away is loose: it is shown up to `reach` times the range of the firm
-    values beyond them.
-    """
-    firm, loose = describe.finite(firm), describe.finite(loose)
-    low, high = (firm.min(), firm.max()) if firm.size else (0.0, 1.0)
+def limits(required: ArrayLike, optional: ArrayLike = (), reach: float = 2.0) -> tuple[float, float]:
+    """Return an axis's ends around all required values, and optional ones at most `reach` spans away from these."""
+    required, optional = describe.finite(required), describe.finite(optional)
+    low, high = (required.min(), required.max()) if required.size else (0.0, 1.0)
     constant = high - low <= 1e-3 * abs(high)
     size = max(abs(high) / 2 if constant else high - low, 1e-12)
-    near = loose[(loose >= low - reach * size) & (loose <= high + reach * size)]
+    near = optional[(optional >= low - reach * size) & (optional <= high + reach * size)]
     low, high = near.min(initial=low), near.max(initial=high)
     margin = 0.06 * max(high - low, size)
     return low - margin, high + margin
 
 
-def linear(ax: Axes, firm: Array, loose: Array, what: str, reach: float = 2.0) -> str:
-    """Fit the axis to the firm values as `limits` does, and say how many of the loose ones it leaves out."""
-    ends = limits(firm, loose, reach)
+def linear(ax: Axes, required: Array, optional: Array, what: str, reach: float = 2.0) -> str:
+    """Set the axis's `limits`, and return a sentence on how many of the optional values lie outside."""
+    ends = limits(required, optional, reach)
     ax.set_ylim(*ends)
-    return _left_out(loose, ends, what)
+    return _left_out(optional, ends, what)
 
 
 def log(ax: Axes, values: Array, what: str, highest: float = np.inf, ticks: str = "") -> str:
-    """Make the axis logarithmic, and leave out spikes: towards zero at a change of sign, and before divergence."""
+    """Make the axis logarithmic; return a sentence on what it leaves out: spikes at changes of sign and divergence."""
     seen = describe.finite(values)
     seen = seen[seen > 0]
     low, high = np.percentile(seen, [3, 99.9], method="lower") if seen.size else (ROUND_OFF, 1.0)
@@ -62,21 +58,21 @@ def log(ax: Axes, values: Array, what: str, highest: float = np.inf, ticks: str 
 
 
 def _left_out(values: Array, ends: tuple[float, float], what: str) -> str:
-    """Say how many values are not on the axis."""
+    """Return a sentence on how many values are not on the axis, and which; empty if all are."""
     seen = describe.finite(values)
     outside = seen[(seen < ends[0]) | (seen > ends[1])]
     return f"Outside the axis: {outside.size} of {what}, {describe.span(outside)}." if outside.size else ""
 
 
-def not_a_strip(*ends: tuple[float, float]) -> list[tuple[float, float]]:
-    """Return limits, extended until no side is much shorter than another."""
+def widened_limits(*ends: tuple[float, float]) -> list[tuple[float, float]]:
+    """Return the limits of a picture's axes, widened until none is shorter than `NARROWEST` of the longest."""
     longest = max(high - low for low, high in ends)
     missing = [max(0.0, NARROWEST * longest - (high - low)) / 2 for low, high in ends]
     return [(low - m, high + m) for (low, high), m in zip(ends, missing, strict=True)]
 
 
-def complete(rows: Array) -> Array:
-    """Return the rows without NaN, shape (K, n)."""
+def rows_without_nan(rows: Array) -> Array:
+    """Return the rows that have no NaN, shape (K, n)."""
     return rows[np.isfinite(rows).all(axis=1)]
 
 
@@ -120,7 +116,7 @@ def draw_errors(ax: Axes, time: Array, errors: Array, labels: Sequence[str], sty
 
 
 def draw_bound(ax: Axes, recording: Recording, bound: Bound, coordinate: str) -> str:
-    """Draw the least standard deviation of a coordinate under its errors, and say it."""
+    """Draw the least standard deviation of a coordinate under its errors; return a sentence on it."""
     if not base.equal(bound.recording.truth, recording.truth):
         raise ValueError("the bound is along another truth than the runs; draw runs on the recording of the bound")
     least = bound.of(coordinate)
@@ -140,7 +136,7 @@ def _root_mean_square(values: Array, width: int) -> Array:
 
 
 def draw_claim_of_coordinate(ax: Axes, run: Run, column: int, colour: str) -> str:
-    """Draw the interval that the observer claims for a coordinate, and say it; nothing if it claims none."""
+    """Draw the interval that the observer claims for a coordinate; return a sentence on it, empty if it claims none."""
     if run.observer.covariance is None:
         return ""
     low, high = (end[:, column] for end in claimed_interval(run))
@@ -148,7 +144,7 @@ def draw_claim_of_coordinate(ax: Axes, run: Run, column: int, colour: str) -> st
 
 
 def draw_claim(ax: Axes, run: Run, low: Array, high: Array, truth: Array | None, colour: str) -> str:
-    """Draw a band whose infinite ends are at the edge of the axes, and say where it ends and what it holds."""
+    """Draw a claimed band, infinite ends at the axes' edge; return a sentence on its ends and on what it holds."""
     reaching = np.where(np.isposinf(high), ax.get_ylim()[1], high)
     name = "_claim" if CLAIM in ax.get_legend_handles_labels()[1] else CLAIM  # one entry in the legend
     ax.fill_between(run.elapsed, low, reaching, color=colour, alpha=0.2, linewidth=0, zorder=1, label=name)

@@ -113,7 +113,7 @@ def _one_point(ax: Axes, recording: Recording, run: Run | None, threshold: float
         ax.plot(*path.T, **(look.TRUTH if kind == "truth" else look.dots(path)))
     if len(estimate):
         ax.plot(*estimate.T, **look.ESTIMATE)
-    seen = curves.complete(path)
+    seen = curves.rows_without_nan(path)
     for end, place in ((look.START, seen[0]), (look.END, seen[-1])):
         ax.plot(*place, color=look.BLACK, zorder=3, **end)
     yield (
@@ -126,7 +126,7 @@ def _one_point(ax: Axes, recording: Recording, run: Run | None, threshold: float
     yield draw_blind_lines(ax, system, *measured) if len(measured) == 1 else ""
     if run is not None:
         yield f"Estimate of the {run.observer.name} observer, dashed. {describe.story(run)}"
-    shown = curves.complete(estimate)
+    shown = curves.rows_without_nan(estimate)
     outside = len(shown) - int(inside(ax, shown).sum())
     yield f"Outside the picture: {outside} of {len(shown)} estimates." if outside else ""
 
@@ -154,15 +154,15 @@ def _set_limits(ax: Axes, path: Array, estimate: Array, centre: Array, radius: f
     if len(centre) == 1 and ((centre > low - NEARBY * size) & (centre < high + NEARBY * size)).all():
         around = radius if radius < size / 2 else 0.0
         shown = np.vstack([path, centre - around, centre + around])
-    ends = [curves.limits(firm, loose, 0.5) for firm, loose in zip(shown.T, estimate.T, strict=True)]
-    x, y = curves.not_a_strip(*ends)
+    ends = [curves.limits(*column, 0.5) for column in zip(shown.T, estimate.T, strict=True)]
+    x, y = curves.widened_limits(*ends)
     ax.set(xlim=x, ylim=y)
 
 
 def _fit_height(ax: Axes) -> None:
     """Make the figure of a wide picture lower, without empty margins."""
     width, height = np.ptp([ax.get_xlim(), ax.get_ylim()], axis=1)
-    whole, lettering = base.whole(ax), 1.2  # inches above and below the axes
+    whole, lettering = base.root_figure(ax), 1.2  # inches above and below the axes
     whole.set_figheight(min(whole.get_figheight(), look.WIDTH * height / width + lettering))
 
 
@@ -194,7 +194,7 @@ def inside(ax: Axes, places: Array) -> Flags:
 
 
 def draw_focus(ax: Axes, focus: Array, path: Array, time: Array) -> str:
-    """Draw the focus as a diamond, a faint path or a pointer at the edge; say where it is, and the closest approach."""
+    """Draw the focus as a diamond, a path or a pointer at the edge; return a sentence on its place and distance."""
     distances = np.linalg.norm(path - focus, axis=1)
     if not np.isfinite(distances).any():
         ax.plot([], [], linestyle="", label="no focus of expansion")
@@ -227,7 +227,7 @@ def _edge(ax: Axes, place: Array) -> Array:
 
 
 def draw_disk(ax: Axes, focus: Array, radius: float, threshold: float, path: Array) -> str:
-    """Draw the disk in which |w| is below the threshold; say how many samples lie in it."""
+    """Draw the disk in which |w| is below the threshold; return a sentence on how many samples lie in it."""
     low, high = np.array([ax.get_xlim(), ax.get_ylim()]).T
     visible = bool(np.linalg.norm(focus[0] - np.clip(focus[0], low, high)) < radius)
     name = f"{'' if visible else '_'}$|w| < {threshold:g}$"
@@ -239,7 +239,7 @@ def draw_disk(ax: Axes, focus: Array, radius: float, threshold: float, path: Arr
 
 
 def draw_blind_lines(ax: Axes, system: PerspectiveSystem, measured: str) -> str:
-    """Draw lines where w vanishes if one output is measured, in a constant motion; say where."""
+    """Draw lines where w vanishes if one output is measured, in a constant motion; return a sentence on them."""
     # As fractions, roots of two entries are equal when they should be.
     numbers = {symbol: sp.Rational(repr(value)) for symbol, value in system.values.items()}
     if system.partition(measured).culprits:

@@ -124,7 +124,7 @@ def bound_map(found: BoundMap, threshold: float = 0.1, ax: Axes | None = None) -
     ax.grid(False)
     ax.set(xlabel=describe.label("y1", system.surface), ylabel=describe.label("y2", system.surface))
     if own:
-        base.whole(ax).colorbar(picture, ax=ax, shrink=0.8, label="least error of the distance (%)")
+        base.root_figure(ax).colorbar(picture, ax=ax, shrink=0.8, label="least error of the distance (%)")
     best, worst = (
         np.unravel_index(pick(found.relative), found.relative.shape) for pick in (np.nanargmin, np.nanargmax)
     )
@@ -148,7 +148,7 @@ def _where(found: BoundMap, place: Sequence[Any]) -> str:
 
 
 def _draw_zero_set(ax: Axes, found: BoundMap, threshold: float) -> str:
-    """Draw where w vanishes or is small, and say it."""
+    """Draw where w vanishes or is small; return a sentence on it."""
     system = found.system
     centre = image.focus_of_expansion(system, np.zeros(1))[0] + 0.0  # so that no zero has a sign
     if not np.isfinite(centre).all():
@@ -282,7 +282,7 @@ def _draw_smallest(ax: Axes, found: Sequence[Windows], names: Sequence[str]) -> 
 
 
 def _annotate_least(ax: Axes, one: Excitation) -> str:
-    """Write the least value beside its mark, and say it with the largest one and with what is not drawn."""
+    """Write the least value beside its mark; return a sentence on it, the largest one, and what is not drawn."""
     least, at = np.nanmin(one.smallest), one.time[np.nanargmin(one.smallest)]
     late = at > one.time[0] + 0.85 * (one.time[-1] - one.time[0])
     ha, right = ("right", 4) if late else ("center", 0)
@@ -297,7 +297,7 @@ def _annotate_least(ax: Axes, one: Excitation) -> str:
 
 
 FINEST = 1.3
-"""Factor between the ends of the colours that a figure has at least, so that no round-off is seen."""
+"""Least ratio between the ends of a scale of colours, so that round-off makes no pattern."""
 
 
 @figure("there is none, something else is among them, or the number of labels or axes is wrong")
@@ -345,5 +345,5 @@ def fields(
         )
     maps[0].set_ylabel("up (°)")
     if own:
-        base.whole(maps[0]).colorbar(picture, ax=maps, shrink=0.8, label="least error of the range (%)")
+        base.root_figure(maps[0]).colorbar(picture, ax=maps, shrink=0.8, label="least error of the range (%)")
     return maps

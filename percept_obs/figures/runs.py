@@ -88,7 +88,7 @@ def signals(run: Run, axes: Sequence[Axes] | None = None) -> Drawing:
 
 
 def _coordinate(ax: Axes, run: Run, column: int) -> str:
-    """Draw samples, truth and estimate of one coordinate, and say what they are."""
+    """Draw samples, truth and estimate of one coordinate; return a sentence on what they are."""
     recording = run.recording
     name = recording.view.coordinates[column].name
     estimate = run.estimate[:, column]
@@ -277,7 +277,7 @@ def _known_distances(recording: Recording) -> dict[str, Array]:
 
 
 def _draw_claim(ax: Axes, run: Run, colour: str) -> str:
-    """Draw the interval that the observer claims for the distance, and say it; nothing if it claims none."""
+    """Draw the interval that the observer claims for the distance; return a sentence on it, empty if it claims none."""
     if run.observer.covariance is None or not isinstance(run.recording.view, ImagingSurface):
         return ""
     low, high = claimed_distance(run)

@@ -54,7 +54,7 @@ def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Dr
     ax = canvas(ax, 5.6, projection="3d")
     truth = np.empty((0, 3)) if recording.points is None else recording.points
     estimate = np.empty((0, 3)) if run is None else _believable(run, far)
-    path = curves.complete(truth if len(truth) else estimate)
+    path = curves.rows_without_nan(truth if len(truth) else estimate)
     camera = 0.1 * np.abs(path).max(initial=1e-3) * CAMERA
     _draw_in_space(ax, truth, **look.TRUTH)
     _draw_in_space(ax, estimate, **look.ESTIMATE | {"linewidth": 0.9, "zorder": 1})
@@ -63,13 +63,13 @@ def scene(data: Run | Recording, far: float = 2.0, ax: Axes | None = None) -> Dr
         _draw_in_space(ax, np.array([(0, 0, 0), path[-1]]), color=look.GREY, linestyle=":", label="viewing ray")
     _draw_in_space(ax, path[:1], color=look.BLACK, **look.START)
     _draw_in_space(ax, path[-1:], color=look.BLACK, **look.END)
-    _set_equal_scales(ax, curves.complete(np.vstack([camera, truth, estimate])))
+    _set_equal_scales(ax, curves.rows_without_nan(np.vstack([camera, truth, estimate])))
     legend_above(ax, centred=True, fitting=66)
     yield "Scene in metres, with the camera at the origin and Z forward."
     yield _approach(recording.elapsed, truth) if len(truth) else ""
     yield f"The point ends at X, Y, Z = {describe.place(path[-1])} m." if len(path) else "No place is known."
     yield "" if run is None else f"Estimate of the {run.observer.name} observer, dashed. {describe.story(run)}"
-    if missing := len(estimate) - len(curves.complete(estimate)):
+    if missing := len(estimate) - len(curves.rows_without_nan(estimate)):
         why = f"not in front of the camera or over {far:g} times as far away"
         yield f"Left out: {missing} of {len(estimate)} estimates, {why}."
     return [ax]
@@ -83,7 +83,7 @@ def _draw_in_space(ax: Axes, points: Array, **looks: Any) -> None:
 
 def _set_equal_scales(ax: Any, points: Array) -> None:
     """Set one scale for the three directions, with few ticks."""
-    x, y, z = curves.not_a_strip(*(curves.limits(column) for column in points.T[[2, 0, 1]]))
+    x, y, z = curves.widened_limits(*(curves.limits(column) for column in points.T[[2, 0, 1]]))
     ax.set(xlim=x, ylim=y, zlim=z)
     for set_label, name in ((ax.set_xlabel, "Z"), (ax.set_ylabel, "X"), (ax.set_zlabel, "Y")):
         set_label(f"${name}$ (m)", labelpad=12)

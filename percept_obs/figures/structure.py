@@ -59,8 +59,8 @@ def quantities(
         raise ValueError("the runs have different unknowns or times; draw them one by one")
     if any(run.recording.truth is None for run in runs):
         raise ValueError("there is no truth to compare with; figures.signals(run) draws a run without one")
-    true = _named(first, first.truth, image)
-    found = [_named(run, run.estimate, image) for run in runs]
+    true = _quantities(first, first.truth, image)
+    found = [_quantities(run, run.estimate, image) for run in runs]
     stack = rows(axes, [1.5] * len(true), list(true))
     shown = "Image coordinates, inverse depth and unknown quantities" if image else "Unknown quantities"
     yield f"{shown} from {first.elapsed[0]:g} to {first.elapsed[-1]:g} s, a row each."
@@ -72,7 +72,7 @@ def quantities(
         ax.set_ylabel(f"${name[0]}_{{{name[1:].lstrip('_')}}}$" + (f" ({unit})" if unit else ""))
         ends = [f"{label} {_end(one)}" for label, one in zip(labels, estimates, strict=True)]
         yield f"{name}{f' in {unit}' if unit else ''}: the truth, {describe.span(truth)}; at the end {', '.join(ends)}."
-        yield curves.linear(ax, _neighbourhood(truth), estimates, f"the estimates of {name}", reach=0.0)
+        yield curves.linear(ax, _values_around(truth), estimates, f"the estimates of {name}", reach=0.0)
     legend_above(stack[0])
     return stack
 
@@ -118,7 +118,7 @@ def cases(
         legend.remove()
         column[0].set_title(name)
     handles, names = axes[0].get_legend_handles_labels()
-    base.whole(axes[0]).legend(handles, names, loc="outside upper left", ncols=len(names), frameon=False)
+    base.root_figure(axes[0]).legend(handles, names, loc="outside upper left", ncols=len(names), frameon=False)
     return axes
 
 
@@ -126,8 +126,8 @@ UNITS = {"d_s": "1/m", "y1": "", "y2": "", "y3": "1/m"}
 """Units of quantities that are no velocity."""
 
 
-def _named(run: Run, coordinates: Array, image: bool) -> dict[str, Array]:
-    """Return the unknown quantities, if asked for after the image coordinates and the inverse depth."""
+def _quantities(run: Run, coordinates: Array, image: bool) -> dict[str, Array]:
+    """Return the unknown quantities by name, if `image` after the image y1, y2 and the inverse depth y3."""
     view, choice = run.view, _choice(run)
     found = choice.quantities(coordinates[:, -len(choice.unknown) :])
     if not image:
@@ -146,8 +146,8 @@ def _choice(run: Run) -> StructureAndMotion:
     return choice
 
 
-def _neighbourhood(truth: Array) -> Array:
-    """Return values that an axis should hold: a quarter of its size around the truth, or 0.1 around zero."""
+def _values_around(truth: Array) -> Array:
+    """Return values that an axis should hold: the truth plus and minus a quarter of its size, or 0.1 if it is 0."""
     size = np.abs(describe.finite(truth)).max()
     around = 0.25 * size if size > 0 else 0.1
     return np.concatenate([truth - around, truth + around])

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 PANELS = {"settling_time": "settling time (s)", "rms": "rms error of 1/distance (1/m)"}
 
-FULL = 4.0
-"""Usual sizes of a mistake that the figure of causes shows to either side."""
+AXIS_END = 4.0
+"""Ends of the axis of causes, in usual sizes of a mistake to either side."""
 
 _RUN: dict[str, Any] = {"color": look.SKY, "linestyle": "", "marker": "|", "markersize": 12}
 _SPREAD: dict[str, Any] = {"color": look.BLACK, "linewidth": 1.6, "marker": "|", "markersize": 6}
@@ -70,7 +70,7 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawi
         ax.set_xlabel(title)
         ax.set_yticks(range(len(found)), [f"{label}\n{_counts(row)}" for label, row in found.iterrows()])
         ax.set_ylim(len(found) - 0.5, -0.5)
-    picture = base.whole(pair[0])
+    picture = base.root_figure(pair[0])
     picture.legend(
         handles=[Line2D([], [], label=name, **looks) for name, looks in _KEY.items()],
         loc="outside upper center" if picture.get_layout_engine() else "upper center",
@@ -109,7 +109,7 @@ def _counts(row: pd.Series) -> str:
 
 
 def _medians(row: pd.Series) -> str:
-    """Medians and quantiles, in describe."""
+    """Return a sentence with the medians and the 16 and 84 % quantiles of settling time and rms error."""
     sentences = []
     for column, what, unit in (("settling_time", "settling time", "s"), ("rms", "rms error", "1/m")):
         values = (row[column + end] for end in ("", "_low", "_high"))
@@ -166,7 +166,7 @@ def efficiencies(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Dra
         rest = [name for name in rows["observer"] if name not in set(there["observer"])]
         yield f"{case}: {', '.join(said) or 'nobody settles'}" + (f"; not settled: {', '.join(rest)}." if rest else ".")
     handles = [Line2D([], [], label=name, **each) for name, each in looks.items()]
-    base.whole(panels[0]).legend(handles=handles, loc="outside upper center", ncols=3, frameon=False)
+    base.root_figure(panels[0]).legend(handles=handles, loc="outside upper center", ncols=3, frameon=False)
     return panels
 
 
@@ -290,7 +290,7 @@ def settings_map(values: Values, ax: Axes | None = None) -> Drawing:
     drawn = ax.pcolormesh(values[right], values[up], numbers, shading="nearest", cmap="viridis")
     ax.grid(visible=False)
     ax.set(xlabel=_with_unit(values[right]), ylabel=_with_unit(values[up]))
-    base.whole(ax).colorbar(drawn, ax=ax, label=_with_unit(values))
+    base.root_figure(ax).colorbar(drawn, ax=ax, label=_with_unit(values))
     yield f"{_with_unit(values)} over {_with_unit(values[right])} and, upwards, {_with_unit(values[up])}."
     if not known.any():
         yield "There is no finite value."
@@ -381,12 +381,12 @@ def causes(found: Diagnosis, ax: Axes | None = None) -> Drawing:
         told = key not in found.not_told
         color = look.VERMILLION if key in named else look.BLUE if told else look.GREY
         value = float(np.linalg.norm(estimate.value)) if cause.size > 1 else float(estimate.value[0])
-        width = min(2 * estimate.deviation / cause.usual, 2 * FULL)
+        width = min(2 * estimate.deviation / cause.usual, 2 * AXIS_END)
         ax.errorbar(value / cause.usual, row, xerr=width, color=color, marker="o", capsize=3)
     ax.axvline(0, color=look.BLACK, linewidth=1)
     labels = [f"{key} (in {CAUSES[key].size_in_words})" for key in found.estimates]
     ax.set_yticks(range(len(labels)), labels)
-    ax.set(xlim=(-FULL, FULL), xlabel="wrong by so many times the usual size of the mistake")
+    ax.set(xlim=(-AXIS_END, AXIS_END), xlabel="wrong by so many times the usual size of the mistake")
     ax.invert_yaxis()
     yield "Numbers that may be wrong, each with two standard deviations; grey where the motion cannot tell."
     yield found.sentence

@@ -24,8 +24,8 @@ FAMILIES = (
 )
 """Dictionaries of OpenCV that hold all others."""
 
-SEVERAL = 4
-"""Markers in a picture that are no accident."""
+FEWEST_MARKERS = 4
+"""Fewest markers of a dictionary in a picture that mean a board, and no accident."""
 
 WINDOW = 0.7
 """Half of the window in which a corner is looked for, over the white between a square's edge and its marker."""
@@ -177,7 +177,7 @@ def other_markers(picture: Any) -> list[str]:
             numbers = detector.detectMarkers(shown)[1]
             known = 0 if numbers is None else len(np.unique(numbers))
             ours = family == FAMILIES[0] and known and np.max(numbers) < 50
-            if known >= SEVERAL and (colours or not ours):
+            if known >= FEWEST_MARKERS and (colours or not ours):
                 which = f"the dictionary {DICTIONARY}" if ours else f"another dictionary, {family}"
                 found.append((known, f"markers {colours}{which}"))
     return [max(found)[1]] if found else []

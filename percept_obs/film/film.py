@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 TRIANGULATION = "triangulation"
-"""Name of the distance that the whole film tells of a point at rest."""
+"""Name of the distance of a point at rest that is triangulated from the whole film."""
 
 CUT_OFF = 0.95
 """Share of a film's pictures below which it is said that some are missing."""
@@ -94,7 +94,7 @@ class Film(Footage):
 
     @property
     def sentence(self) -> str:
-        """Contents of the film, and what spoils it."""
+        """Sentence on what the film shows, and on what spoils it."""
         time, corners = self.sighting.time, sum(each.truth is not None for each in self)
         width, height = self.video.size
         first = (
@@ -161,6 +161,6 @@ class Film(Footage):
         write_overlay(path, self.video, self.camera, self.runs, [self.claimed(run) for run in self.runs])
 
     def claimed(self, run: Run) -> Array:
-        """Two standard deviations of the distances of a run, by its filter and by the focal length, in metres."""
+        """Two standard deviations of a run's distances in metres, by its filter and the focal length."""
         relative = np.sqrt(np.maximum(run.covariance[:, -1, -1], 0.0)) / np.maximum(run.estimate[:, -1], 1e-12)
         return np.asarray(2 * np.hypot(relative, self.focal_deviation) * run.distance)

@@ -19,7 +19,7 @@ TICKS = 90_000
 """Ticks of a film's clock in a second."""
 
 MOST = 12
-"""Points with their distance in one picture."""
+"""Largest number of points in one picture whose distance is written beside them."""
 
 BLUE, WHITE, INK = (37, 99, 235), (255, 255, 255), (20, 20, 20)
 

@@ -19,7 +19,7 @@ EDGE = 8.0
 FOOT, FOOT_WIDTH, CODE = 17.5, 252.0, 11.5
 """Height and width in mm of the foot, as wide as the default board, and the side of the code in it; 6 mm stay white."""
 SMALLEST = 3.0
-"""A marker's side in mm, which a telephone sees as 12 pixels of 1280 at a quarter of a metre."""
+"""Least side of a marker in mm: a telephone sees it as 12 pixels of 1280 at a quarter of a metre."""
 SHARE = 0.75
 """A marker's side over its square's, by default: the white around the marker is as wide as one of its cells."""
 

@@ -17,7 +17,7 @@ Shot = Callable[[float, str], Any]
 """Function from a scale and a format, "gray" or "rgb24", to an upright picture."""
 
 LOOKED_AT = 20
-"""Pictures at the beginning by which it is seen whether the file gives them times in their order."""
+"""Number of pictures at the beginning whose times show whether the file has times, in the pictures' order."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ NEGLIGIBLE = 1e-9
 """A direction that changes the outputs less than this, relatively, is not seen."""
 
 MOST_TERMS = 6
-"""Most states in the name of a direction; of more, all but one of these are named."""
+"""Most terms in the name of a direction: of more states the first five are named, and the others counted."""
 
 
 def unobservable(A: Array, C: Array) -> Array:
@@ -26,6 +26,7 @@ def unobservable(A: Array, C: Array) -> Array:
     basis = null_space(C, rcond=NEGLIGIBLE)
     tolerance = NEGLIGIBLE * max(1.0, float(np.abs(A).max(initial=0.0)))
     while basis.shape[1]:
+        # the part of A basis outside of the subspace: directions that A turns into seen ones are dropped
         leaving = A @ basis - basis @ (basis.T @ (A @ basis))
         _, singular, right = np.linalg.svd(leaving.reshape(-1, basis.shape[1]))
         kept = right[int((singular > tolerance).sum()) :].T

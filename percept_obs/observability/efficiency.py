@@ -69,6 +69,7 @@ class Efficiency:
         """Standard deviation of `mean` over sets of as many runs, by the jackknife."""
         inside = self._between(begin, end)
         squares, count = (self.errors[:, inside] / self.bound[inside]) ** 2, len(self.errors)
+        # the mean ratio with each run left out in turn
         without = np.sqrt((squares.sum(axis=0) - squares) / (count - 1)).mean(axis=1)
         return float(math.sqrt((count - 1) * np.mean((without - without.mean()) ** 2)))
 

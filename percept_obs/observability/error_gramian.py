@@ -29,7 +29,7 @@ STEP = 0.05
 """Longest step of perturbed runs in seconds; its error is small against what such a perturbation leaves."""
 
 MOST_WINDOWS = 24
-"""Windows of the empirical Gramian."""
+"""Largest number of windows of the empirical Gramian."""
 
 
 class ErrorGramian(Windows):
@@ -165,6 +165,7 @@ def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, end
     assert recording.truth is not None
     n, time, truth = len(form.coordinates), recording.time, recording.truth
     usual = np.sqrt(np.mean(truth**2, axis=0))
+    # a coordinate that is about zero is perturbed by share^2 of its usual size
     sizes = share * np.maximum(np.abs(truth[begins]), share * usual)
     signs = np.concatenate([np.eye(n), -np.eye(n)])  # central differences
     states = (truth[begins][:, None] + sizes[:, None] * signs).reshape(-1, n)
@@ -172,11 +173,13 @@ def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, end
     measured, seen = positions(form, form.measured), np.isfinite(outputs_of(form, recording))
     found, before = np.zeros((len(begins), n, n)), np.zeros((len(begins), n, n))
     for j in range(int((ends - begins).max()) + 1):
+        # windows of fewer samples than the longest one wait at their end, where steps have no length
         at, after = np.minimum(begins + j, ends), np.minimum(begins + j + 1, ends)
         outputs = states[:, measured].reshape(len(begins), 2 * n, -1)
         slopes = (outputs[:, :n] - outputs[:, n:]) / (2 * sizes[:, :, None]) * seen[at][:, None]
         now, h = slopes @ np.swapaxes(slopes, 1, 2), time[after] - time[at]
         if j:
+            # trapezoidal rule
             found += (before + now) * (time[at] - time[np.minimum(begins + j - 1, ends)])[:, None, None] / 2
         before = now
         count = max(1, int(np.ceil(h.max() / STEP - 1e-4)))

@@ -242,6 +242,7 @@ def lie_derivatives(system: System, orders: int | None = None, varying: bool = F
         blocks.append(gradient)
         if k < orders:
             moved = gradient * f
+            # L_f h of a varying motion: the parameters move as well, each derivative by the next one
             for now, after in pairwise(chain):
                 moved += h.jacobian(now) * sp.ImmutableMatrix(after) if now else sp.zeros(*h.shape)
             h = sp.ImmutableMatrix(moved)

@@ -70,6 +70,7 @@ def linearised(
 ) -> Linearised:
     """Linearise a form along the truth of a recording that it fits, with steps up to the longest one in seconds."""
     n, lengths = len(form.coordinates), np.diff(recording.time)
+    # as many steps between all samples, so that all intervals are integrated side by side
     count = max(1, int(np.ceil(lengths.max() / longest - 1e-4)))
     limit(len(lengths) * count * n, f"numbers, from {count} steps between two samples", "take longer steps")
     assert recording.truth is not None
@@ -109,7 +110,7 @@ def values_along(form: PartitionedSystem, recording: Recording, expressions: lis
 def _spread(
     form: PartitionedSystem, rate: sp.ImmutableMatrix, doubt: Doubt, recording: Recording
 ) -> sp.ImmutableMatrix:
-    """Covariance that a doubt adds to the coordinates a second."""
+    """Covariance per second that a doubt adds to the coordinates."""
     x = form.coordinates
     each = [] if isinstance(doubt, Mapping) else (doubt / recording.scale**2).tolist()
     doubts = doubt if isinstance(doubt, Mapping) else dict(zip(names_of(form), each, strict=True))
@@ -122,6 +123,7 @@ def _spread(
         if not 0 <= variance < np.inf:
             raise ValueError(f"the doubt in {name} is {variance}; it is a variance a second, finite and not negative")
         symbol = known[name]
+        # noise in a coordinate's rate acts on it alone, in a parameter on whatever rate depends on it
         column = sp.Matrix([int(symbol == s) for s in x]) if symbol in x else rate.diff(symbol)
         total += sp.Float(variance) * column * column.T
     return total

@@ -60,6 +60,7 @@ def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
         square = rows.T * rows
         return tuple(square[i, j] for i in range(3) for j in range(i, 3))
 
+    # what is not measured, and the inverse distance, are known at first by the prior alone
     prior = sp.ImmutableMatrix([*hidden, 1 / surface.distance]).jacobian(POINT).xreplace(at_start)
     rows = sp.ImmutableMatrix(seen).jacobian(POINT).xreplace(at_point) * PHI
     slope = sp.ImmutableMatrix([surface.distance]).jacobian(POINT).xreplace(at_point) * PHI
@@ -232,6 +233,7 @@ def bound_map(
         seen = np.ones(len(points), dtype=bool)
         for k in range(count):
             *share, away = gather(*Phi[k].ravel(), *moved[k], *points.T)
+            # one pass over the samples for all places at once, so that memory does not grow with the samples
             J += np.array(share) / noise_variance
             seen &= away > 0
         (relative,) = vectorised((*INFORMATION, *PLACE), [kernel.finish], values)(*J, *last)

@@ -148,6 +148,7 @@ class Observability:
     def _measures(self) -> Iterator[Measure]:
         elapsed, window = self.recording.elapsed, f"{self.window:g} s"
         if self.instant is not None:
+            # with fewer outputs than hidden coordinates w w^T is singular, and the printed measure differs
             if len(self.form.x1) < len(self.form.x2):
                 largest = self.instant.eigenvalues[:, -1]
                 k, value = int(np.argmin(largest)), float(largest.min())

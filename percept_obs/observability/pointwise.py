@@ -79,6 +79,7 @@ class InstantaneousObservability:
         x1 = self.form.x1
         if len(x1) < 2 or not all(entry.is_polynomial(*x1) for entry in self.form.w):
             return None
+        # |w|^2 is a circle's quadratic if its Hessian is a multiple of the identity and w has one zero
         curvature = sp.hessian(sum(entry**2 for entry in self.form.w), x1) / 2
         growth = sp.factor(curvature[0, 0])
         if (curvature - growth * sp.eye(len(x1))).expand() != sp.zeros(len(x1)):

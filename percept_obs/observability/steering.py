@@ -22,7 +22,7 @@ VELOCITIES = (("v_c1", "v_c2", "v_c3"), ("b1", "b2", "b3"))
 """Names of the velocity that is steered, of a rigid and of an affine motion."""
 
 MOST_EVALUATIONS = 20_000
-"""Evaluations of a steered motion: a few seconds of computing."""
+"""Largest number of evaluations of a steered motion: a few seconds of computing."""
 
 
 @checked

@@ -127,6 +127,7 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
     rows = np.column_stack([found.matrices.reshape(len(time), -1), found.scale])
     integrals = cumulative_trapezoid(rows, time, axis=0, initial=0)
     ends = time[from_the_start(recording.elapsed, window)]
+    # integrals between samples: the running integral, interpolated at the window's ends
     begins = np.maximum(ends - window, time[0])
     over = np.stack([np.interp(ends, time, c) - np.interp(begins, time, c) for c in integrals.T], axis=-1)
     matrices = over[:, :-1].reshape(-1, *found.matrices.shape[1:])
@@ -179,7 +180,9 @@ def window_integrals(time: Array, S: Array, Phi: Array, window: float) -> tuple[
     S, shape (K, n, n), is the information of each sample, and Phi, shape (K - 1, n, n), the transition to the next one.
     """
     h = np.diff(time)[:, None, None]
+    # trapezoidal rule over one interval, with the end's information referred to its beginning
     G = h / 2 * (S[:-1] + _seen_through(Phi, S[1:]))
+    # the first sample at or behind the window's end; windows that reach beyond the last one are left out
     ends = np.searchsorted(time, time + window - slack_of(time))
     begins = np.flatnonzero(ends < len(time))
     reached, left, size = begins.copy(), ends[begins] - begins, 1

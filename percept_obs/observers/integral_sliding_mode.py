@@ -250,7 +250,7 @@ def _start_left_over(form: CanonicalForm, g_hat: sp.ImmutableMatrix) -> Unobserv
 
 
 def _fastest(switch: str) -> FastestRate | None:
-    """Decay rate, at se = 0, of se on the ideal surface, or of s in the boundary layer; None for a sign."""
+    """Fastest decay rate at se = 0: of se with the ideal switch, of s in a boundary layer; None with a sign."""
     slope = a + b * elapsed
     if switch == IDEAL:
         return FastestRate(k1 + gamma * slope, "take smaller gains, or keep the slope with sharpening=0")

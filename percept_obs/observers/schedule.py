@@ -17,7 +17,7 @@ clock = sp.Symbol("tau", real=True)
 """State of an observer that counts the seconds since the first sample."""
 
 INSTANTS = 1001
-"""Times at which a gain's condition is looked at."""
+"""Number of times at which a gain's condition is tested."""
 
 
 @checked

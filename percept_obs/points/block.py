@@ -93,6 +93,7 @@ def point_block(surface: ImagingSurface) -> PointBlock:
     [1, 0, -y1],
     [0, 1, -y2]])
     """
+    # a linear function is its gradient times the point, and the gradient is free of the point
     l = sp.ImmutableMatrix([surface.distance]).jacobian(POINT)
     N = sp.ImmutableMatrix([sp.cancel(entry * surface.distance) for entry in surface.image]).jacobian(POINT)
     if (l.free_symbols | N.free_symbols) & set(POINT):

@@ -160,6 +160,7 @@ def _body_motion(name: str, vectors: int, velocities: tuple[Any, ...], times: Ar
     """Motion of one position and of vectors that turn with a body."""
     w_c, v_c, w_b, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w_c", "v_c", "w_b", "v_p"))
     symbols = (w_c, v_c, w_b, v_p)
+    # seen from the camera everything turns against it; offsets turn with the body besides
     place, turning = cross(-w_c), cross(w_b - w_c)
     A = placed(vectors, {(0, 0): place, **{(k, k): turning for k in range(1, vectors)}})
     v = placed(vectors, {(0, 0): v_p - v_c}, columns=1)

@@ -65,6 +65,7 @@ def conditions(observer: LuenbergerObserver, time: Array, outputs: Array, P: Arr
     form, matrix = observer.form, observer.P
     S = form.information(outputs)
     if matrix.computed:
+        # the equation of P itself gives A^T P + P A + P', without A or a difference
         left = matrix.information * S - matrix.forgetting * (P - matrix.start) - matrix.decrease
     else:
         A, _ = form.coefficients(time)

@@ -22,7 +22,7 @@ from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
 from percept_obs.validation import Entries, checked, expression, matrix, numbers, set_fields, warn
 
 DRAWS = 4
-"""Random values of a motion's symbols, by which directions are found that no motion shows."""
+"""Number of draws of a motion's symbols, by which directions are found that no motion shows."""
 
 JUDGED = "the points' positions"
 """Name of what verdicts judge of several points, also of live labs."""
@@ -193,6 +193,7 @@ class PointsForm:
         """The entries of [A, v] that are not 0; v is column n."""
         entries = [(i, j, e) for (i, j), e in sorted(self.motion.A.todok().items())]
         entries += [(i, self.states, e) for (i, _), e in sorted(self.motion.b.todok().items())]
+        # entries with the same expression, as in a rotation's blocks, are evaluated once
         distinct = tuple(dict.fromkeys(e for _, _, e in entries))
         place = {e: k for k, e in enumerate(distinct)}
         places = np.array([(i, j, place[e]) for i, j, e in entries], dtype=np.intp).reshape(-1, 3)
@@ -260,6 +261,7 @@ class PointsForm:
         if self.motion.signal is not None and self.motion.signal.constant:
             known = self.motion.known(0.0)
         else:
+            # a direction that random motions do not show is shown by none, almost surely
             known = np.random.default_rng(0).normal(size=(DRAWS, len(self.motion.parameters)))
         A = self._dense(self._evaluated(known))[:, :, :-1]
         return readonly(unobservable(A, self.blocks.reshape(-1, self.states)))

@@ -21,10 +21,10 @@ from percept_obs.system.signal import slack_of
 from percept_obs.validation import checked
 
 LARGEST_TABLE = 1e7
-"""Most entries of the transition matrices of all samples; of more samples, every so many are taken."""
+"""Largest number of entries of all transition matrices; with more samples only every second, third, ... is used."""
 
 PARTS = 40
-"""Intervals into which a window is divided for the bound on the decay."""
+"""Number of intervals into which a window is divided for the bound on the decay."""
 
 VERDICTS = MappingProxyType(
     {
@@ -254,9 +254,11 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         raise ValueError("the recording has no truth, so that the true images are not known")
     check_window(recording, window, holds_samples=True)
     time, images, slack = recording.time, _true_images(recording), slack_of(recording.time)
+    # (15) is tested at as many instants as a window has intervals
     every = slice(None, None, max(1, len(time) // PARTS))
     if P.computed or not conditions(observer, time[every], images[every], P.at(time[every])).printed_holds:
         raise ValueError("the bound rests on (15): give a constant or scheduled P with A^T P + P A + P' <= 0")
+    # windows side by side, so that their contractions multiply
     begins = time[0] + window * np.arange(int((time[-1] - time[0] + slack) / window))
     seen, feedback = np.empty(len(begins)), np.empty(len(begins))
     for k, begin in enumerate(begins):
@@ -267,6 +269,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         steps = transitions(form, at)[:, :-1, :-1]
         Phi = np.stack([*accumulate(steps, lambda Phi, step: step @ Phi, initial=np.eye(form.states))])
         rows = form.rows(images[inside])
+        # each instant weighted by the root of its share, so that sums of products are integrals
         shown = np.sqrt(shares)[:, None, None] * rows @ Phi
         weights = P.at(at)
         corrected = (
@@ -275,10 +278,13 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         # a correction at one instant is missing from all later images
         size = rows.shape[1]
         operator = np.concatenate(list(shown)) @ np.concatenate(list(corrected), axis=1)
+        # the kernel acts on later instants only; on its own one by half, as the trapezoidal rule has it
         later = np.kron(np.tri(len(at), k=-1) + np.eye(len(at)) / 2, np.ones((size, size)))
         G = np.einsum("tij,tik->jk", shown, shown)
+        # with P = L L^T, the largest s with G >= s P is the least eigenvalue of L^-1 G L^-T
         half = np.linalg.inv(np.linalg.cholesky(weights[0]))
         seen[k] = np.linalg.eigvalsh(half @ G @ half.T)[0]
+        # a sample sees what earlier corrections have changed, not later ones
         hidden = operator * later
         feedback[k] = np.sqrt(np.linalg.eigvalsh(hidden.T @ hidden)[-1])  # the norm, faster than by an SVD
     return DecayBound(begins, np.maximum(seen, 0.0), feedback, window)

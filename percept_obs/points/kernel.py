@@ -20,7 +20,7 @@ from percept_obs.points.block import PointBlock
 from percept_obs.points.form import PointsForm
 
 Law = tuple[bool, float, float, Array]
-"""True if P is computed; then the last three of P' = -A^T P - P A + information S - forgetting P + pull."""
+"""If P is computed, by P' = -A^T P - P A + information S - forgetting P + pull, and these three."""
 
 COUPLING, WEIGHTS, PLACES = numbers()
 
@@ -43,14 +43,16 @@ class Arrays(NamedTuple):
 
 
 def arrays(form: PointsForm, states: Indices, points: Indices) -> Arrays:
-    """Some states and points of a form as arguments of the loop; the states' rates must not need others."""
+    """Return the loop's arguments for some states and points of a form; no other state may enter their rates."""
     n = form.states
+    # place of each state among the chosen ones, -1 for the others; the last one is the column v
     place = np.full(n + 1, -1)
     place[states], place[n] = np.arange(len(states)), len(states)
     layout = form.layout
     within = place[layout.rows] >= 0
     rows, columns = place[layout.rows[within]], place[layout.columns[within]]
     blocks = form.blocks[points][:, :, states]
+    # np.nonzero gives the entries point by point, so that each point's stand together from `begins` on
     owners, axes, used = map(np.ascontiguousarray, np.nonzero(blocks))
     begins = np.searchsorted(owners, np.arange(len(points) + 1))
     shape = np.array([form.surface.values[symbol] for symbol in form.block.parameters])
@@ -113,7 +115,7 @@ if TYPE_CHECKING:  # names in the text of the next functions, which `source` def
 
 
 def move(target: Array, start: Array, length: float, shares: Array, rates: list[Array]) -> None:
-    """Set the target to the start, moved along the rates of stages for shares of a length."""
+    """Set the target to start + length times the sum of the stages' rates, weighted by their shares."""
     for j in range(len(shares)):
         if shares[j] != 0.0:
             combine(target, start, length * shares[j], rates[j])
@@ -121,7 +123,7 @@ def move(target: Array, start: Array, length: float, shares: Array, rates: list[
 
 
 def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array, dx: Array, dP: Array) -> None:
-    """Fill the rates of the estimate x and of P; where P is not computed, its inverse stands for it."""
+    """Fill dx and dP with the rates of the estimate x and of P; if P is given, the argument P holds its inverse."""
     rows, columns, which, begins, axes, states, entries, shape = form
     computed, information, forgetting, pull = law
     n, m = len(x), y.shape[1]
@@ -135,6 +137,7 @@ def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array,
         else:
             dx[i] += a * x[j]
             if computed:
+                # A_ij takes a times row i of P off column j, for -P A, and off row j, for -A^T P
                 combine(dP[:, j], dP[:, j], -a, P[i])
                 combine(dP[j], dP[j], -a, P[i])
     correction, anything = np.zeros(n), False
@@ -145,13 +148,16 @@ def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array,
         seen = True
         for j in range(m):
             inputs[j] = y[k, j]
+            # NaN, a point that is not seen, is not equal to itself
             seen = seen and y[k, j] == y[k, j]
         if not seen:
             continue
         anything = True
+        # the estimated point C_k x, from the entries of C_k that are not 0
         inputs[m : m + 3] = 0.0
         for e in range(begins[k], begins[k + 1]):
             inputs[m + axes[e]] += entries[e] * x[states[e]]
+        # values has the correction B^T (y l xi - N xi) and then S = B^T B, row by row
         point(inputs, values)
         for e in range(begins[k], begins[k + 1]):
             correction[states[e]] += entries[e] * values[axes[e]]
@@ -159,6 +165,7 @@ def rate(form: Any, law: Law, x: Array, P: Array, coefficients: Array, y: Array,
                 S = values[3 + 3 * axes[e] + axes[f]]
                 dP[states[e], states[f]] += information * entries[e] * entries[f] * S
     if anything and computed:
+        # a computed P changes at each stage, so that a system is solved; a given one comes inverted
         combine(dx, dx, 1.0, solve(P, correction))
     elif anything:
         for i in range(n):
@@ -182,6 +189,7 @@ def run(
     """
     n = len(x)
     size = n if law[0] else 0
+    # estimate and computed P in one vector, so that a step moves both at once
     now, stage = np.zeros(n + size * size), np.zeros(n + size * size)
     rates = [np.zeros(len(now)) for _ in WEIGHTS]
     x_stage, P_stage = stage[:n], stage[n:].reshape(size, size)
@@ -191,6 +199,7 @@ def run(
         combine(now[n + i * size : n + (i + 1) * size], P[i], 0.0, P[i])
     combine(path[0], x, 0.0, x)
     for k in range(len(steps)):
+        # the first stage has no rates before it, and `move` leaves it as it is
         combine(stage, now, 0.0, now)
         for i in range(len(WEIGHTS)):
             row = EACH * k + PLACES[i]
@@ -204,6 +213,7 @@ def run(
         squared = 0.0
         for i in range(n):
             squared += now[i] * now[i]
+        # not <, so that NaN counts as diverged too
         if not squared < LARGEST_SQUARED_STATE:
             return k + 1, now[n:].reshape(size, size) if size else P
     return -1, now[n:].reshape(size, size) if size else P

@@ -114,6 +114,7 @@ class LuenbergerObserver:
         difference = sp.ImmutableMatrix(difference).expand()
         seen = form.B * form.stacked
         without_state = difference.xreplace(dict.fromkeys(form.state, sp.S.Zero))
+        # what is left of the state must be P^-1 C^T B^T B C x, which is 0 since y are the images of x
         rest = difference - without_state - self.inverse * seen.T * (seen * x)
         images = dict(zip(form.y, form.H(form.state), strict=True))
         on_rays = (seen * x).xreplace(images).applyfunc(sp.cancel)

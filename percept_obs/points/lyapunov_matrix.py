@@ -111,6 +111,7 @@ class LyapunovMatrix:
             return np.zeros((len(times), *self.start.shape))
         low, high = times - DIFFERENCE, times + DIFFERENCE
         if self.schedule.times is not None:
+            # samples are not known beyond their ends, where the difference becomes one-sided
             low, high = (np.clip(t, self.schedule.times[0], self.schedule.times[-1]) for t in (low, high))
         return (self.at(high) - self.at(low)) / (high - low)[:, None, None]
 

@@ -118,6 +118,7 @@ def ray_error() -> RayError:
     (ray,) = B.nullspace()
     turn = sp.Matrix([[0, 0, known], [0, 0, 0], [-known, 0, 0]])
     axes = sp.Matrix.hstack(turn * ray, known * ray) / (known * sp.sqrt(ray.dot(ray)))  # across, along
+    # z = axes^T rho turns with the ray, so the rate of the axes is taken off the error's own
     M = (axes.T * (turn * axes - axes.diff(t) - inverse * B.T * B * axes)).applyfunc(sp.cancel)
     corrected, against = -M[0, 0], M[1, 0]
     named = sp.ImmutableMatrix([[-gain, -turning], [turning, 0]])

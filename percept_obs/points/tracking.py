@@ -91,6 +91,7 @@ def _follow_points(
     began = np.zeros_like(recording.seen)
     for sighting in recording.sightings(sight.absence) if sight else ():
         began[sighting.first, sighting.point] = True
+    # P at every sample would fill the memory; the conditions need it now and then
     kept = np.unique(np.linspace(0, len(time) - 1, KEPT).round().astype(int))
     images = grid.held(filled=False)
     images = np.broadcast_to(images, (len(images), EACH + 1, *images.shape[2:]))
@@ -132,6 +133,7 @@ def _independent(form: PointsForm, matrix: LyapunovMatrix) -> list[tuple[Indices
     within = layout.columns < n
     coupled[layout.rows[within], layout.columns[within]] = True
     used = (form.blocks != 0).any(axis=1)
+    # the images of a point couple all states that its C_k uses
     coupled |= used.T @ used
     count, label = connected_components(coupled, directed=False)
     owner = label[used.argmax(axis=1)]
@@ -179,10 +181,12 @@ def _begin(
 ) -> tuple[Array, Array]:
     """Estimate and P with the points that begin at a sample put on their rays."""
     recording, form = task.grid.recording, task.observer.form
+    # a point that was out of sight for longer than the absence counts as never seen
     recent = recording.time[:sample] >= recording.time[sample] - sight.absence
     new = task.began[sample, points]
     others = recording.seen[:sample][recent][:, points].any(axis=0) & ~new
     C = form.blocks[points][:, :, states]
+    # states that a point in sight uses are known already, and are left as they are
     free = (C[new] != 0).any(axis=(0, 1)) & ~(C[others] != 0).any(axis=(0, 1))
     if not free.any():
         return x, P
@@ -190,7 +194,9 @@ def _begin(
     goal = form.surface.locate(np.column_stack([images, np.full(len(images), 1 / sight.depth)]))
     rows = C[new].reshape(-1, len(states))
     x, P = x.copy(), P.copy()
+    # several states may make up one point, or several points share one: least squares, with the least norm
     x[free] = np.linalg.lstsq(rows[:, free], goal.ravel() - rows[:, ~free] @ x[~free], rcond=None)[0]
+    # what P says of states that begin anew, and of their relation to others, is forgotten
     P[free] = P[:, free] = 0
     P[np.ix_(free, free)] = task.observer.P.start[np.ix_(states[free], states[free])]
     return x, P

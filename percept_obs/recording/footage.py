@@ -1,4 +1,4 @@
-"""Recordings that one camera made at a time, and what is known of them all."""
+"""Recordings from one film, with the film's frames and the names of its reference distances."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from percept_obs.recording.recording import Recording
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Footage(Sequence[Recording]):
-    """Sequence of the recordings of a film's points.
+    """Sequence of the recordings of a film's points, with what is known of the whole film.
 
     Parameters
     ----------

@@ -65,9 +65,11 @@ def constant_path(A: Array, b: Array, start: Array, times: Array) -> Array:
     states = np.append(start, 1.0)[None]
     with np.errstate(over="ignore", invalid="ignore"):
         across = exponential(whole * length)
+        # each pass doubles both the states known and the time that the exponential leads over
         while len(states) <= pieces:
             states = np.concatenate([states, states @ across.T])
             across = across @ across
+        # from the nearest state before each time the series is short
         piece = np.minimum((times / length).astype(int) if last else 0 * times.astype(int), pieces)
         begin, share = states[piece].T, times - piece * length
         rate, path = csr_array(whole), begin
@@ -96,6 +98,7 @@ def varying_path(rate: Rate, start: Array, times: Array, breaks: ArrayLike = ())
             while solver.status == "running":
                 solver.step()
                 made = evaluations + solver.nfev
+                # stop early if the evaluations so far foretell more than five times the limit
                 hopeless = made > MOST_EVALUATIONS / 20 and made * last > 5 * MOST_EVALUATIONS * solver.t
                 if hopeless or made > MOST_EVALUATIONS or solver.status == "failed":
                     raise TooMuchWork(

@@ -129,7 +129,7 @@ class PixelCamera:
         """Return the pixels of image coordinates (y1, y2), shape (..., 2)."""
         image = numbers(image, "the image coordinates", 2)
         if any(self.distortion):
-            image = np.stack(self._lens()(*np.moveaxis(image, -1, 0))[:2], axis=-1)
+            image = np.stack(self._distorted_from_undistorted()(*np.moveaxis(image, -1, 0))[:2], axis=-1)
         return image * self.focal + self.centre
 
     def image(self, pixels: ArrayLike) -> Array:
@@ -152,7 +152,7 @@ class PixelCamera:
     def directions(self, pixels: ArrayLike) -> Array:
         """Return what `image` does, with NaN where the lens maps no direction to a pixel."""
         distorted = (numbers(pixels, "the pixels", 2) - self.centre) / self.focal
-        return self._undistorted(distorted) if any(self.distortion) else distorted
+        return self._undistorted_from_distorted(distorted) if any(self.distortion) else distorted
 
     def variance(self, sigma: float) -> float:
         """Return the variance of the image coordinates, the mean of both, for a standard deviation in pixels."""
@@ -168,19 +168,20 @@ class PixelCamera:
             return np.ones(pixels.shape[:-1], dtype=bool)
         return np.all((pixels >= 0) & (pixels <= self.size), axis=-1)
 
-    def _lens(self) -> Callable[..., list[Array]]:
+    def _distorted_from_undistorted(self) -> Callable[..., list[Array]]:
         """Return the function from undistorted coordinates to distorted ones and their derivatives."""
         lens = np.zeros(len(LENS))
         lens[: len(self.distortion)] = self.distortion
         return lambda y1, y2: distortion()(y1, y2, *lens)
 
-    def _undistorted(self, distorted: Array) -> Array:
-        """Undistort image coordinates by Newton's method; NaN where there is no direction."""
-        found, lens = distorted.copy(), self._lens()
+    def _undistorted_from_distorted(self, distorted: Array) -> Array:
+        """Return undistorted image coordinates, by Newton's method; NaN where no direction is seen."""
+        found, lens = distorted.copy(), self._distorted_from_undistorted()
         with np.errstate(all="ignore"):
             for _ in range(MOST_TRIALS):
                 d1, d2, a, b, c, d = lens(*np.moveaxis(found, -1, 0))
                 off1, off2 = d1 - distorted[..., 0], d2 - distorted[..., 1]
+                # Newton's step with the inverse of the 2 x 2 Jacobian written out
                 step = np.stack([d * off1 - b * off2, a * off2 - c * off1], axis=-1) / (a * d - b * c)[..., None]
                 found = found - step
                 if not (np.abs(step) > 1e-15 * (1 + np.abs(found))).any():

@@ -1,4 +1,4 @@
-"""Dead reckoning: where the known motion takes a point, and where a point is that moves so past its images."""
+"""Dead reckoning: maps that move a point as the known motion does, and the point that they keep on given rays."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MOST_STEPS = 20_000
 """Steps at most, so that hours take no longer than minutes."""
 
 REWEIGHTED = 3
-"""Times that linear equations for a point are solved, each time with the weights of the last."""
+"""Number of times that the equations for a point are solved, each time weighted by the distances found last."""
 
 
 def reckon(motion: Motion, times: Array) -> Array:
@@ -33,6 +33,7 @@ def maps_between(motion: Motion, times: Array) -> Array:
     longest = max(LONGEST, abs(float(times[-1] - times[0])) / MOST_STEPS)
     parts = np.ceil(np.abs(steps) / longest * (1 - 1e-9)).astype(int)
     found = np.tile(np.eye(4), (len(steps), 1, 1))
+    # intervals with the same number of steps go side by side
     for count in np.unique(parts):
         rows = np.flatnonzero(parts == count)
         length = (steps[rows] / count)[:, None]
@@ -60,7 +61,7 @@ def transitions(A: Array, b: Array, length: float) -> Array:
 
 
 def point_on_rays(rays: Array, maps: Array) -> tuple[Array, Array, Array]:
-    """Return the (X, 1), but for a factor, whose maps lie on rays, its distances along them, and directions around it.
+    """Return (X, 1) times a factor, so that its maps lie on rays, the distances along these, and directions around it.
 
     A ray, shape (K, 3) and of length 1, and the position are parallel, so that their cross product is 0 (the direct
     linear transform).  The directions, shape (4, 3), are those of its singular vectors.
@@ -71,5 +72,6 @@ def point_on_rays(rays: Array, maps: Array) -> tuple[Array, Array, Array]:
         vectors = np.linalg.svd((across / weight[:, None, None]).reshape(-1, 4), full_matrices=False)[2]
         along = np.einsum("ki,kij,j->k", rays, maps, vectors[-1])
         weight = np.maximum(np.abs(along), 1e-6 * max(float(np.abs(along).max()), 1e-6))
+    # a singular vector has either sign; the point is in front of the camera
     sign = math.copysign(1.0, float(np.median(along)))
     return vectors[-1] * sign, along * sign, vectors[:3].T

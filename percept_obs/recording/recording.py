@@ -208,7 +208,7 @@ class Recording:
 
     @cached_property
     def scale(self) -> Array:
-        """Factors of the coordinates, shape (n,), with which their lengths are measured by the unit."""
+        """Factors that turn the coordinates in metres into those in the recording's unit of length, shape (n,)."""
         return readonly(self.unit ** -np.array(self.view.lengths[: len(self.view.coordinates)], dtype=float))
 
     @cached_property
@@ -275,7 +275,7 @@ class Recording:
 
     @cached_property
     def effective_variance(self) -> float | None:
-        """Variance of white noise as bad as that of the images and of the poses behind the motion together.
+        """Variance of white noise that harms an estimate as much as the errors of images and poses together do.
 
         It is what filters, bounds, trust and diagnosis take; None where the `noise_variance` is not known.  All points
         of a camera share the errors of its poses, so that a mean over points is no more certain of them.

@@ -153,6 +153,7 @@ class Scenario(Scene):
         """Refuse a motion that takes the point behind the camera and back between two samples."""
         A, b = coefficients(self.motion, self.motion.known(times))
         fastest = float(np.abs(A).sum(axis=-1).max(initial=0))
+        # a cubic between samples is true only if these are close against the motion's time constant
         grid, _ = step_grid(times, LONGEST_STEP_SHARE / max(fastest, 1e-9))
         if len(grid) > len(times):
             times, points = grid, self.points(grid)

@@ -62,12 +62,14 @@ def smooth(time: Array, values: Array, floor: float = 0.0, memory: float | None 
     from scipy.linalg import cho_solve_banded, cholesky_banded
     from scipy.optimize import minimize_scalar
 
+    # in mean steps, so that lambda and the matrices have no unit and a usual size
     step = float(time[-1] - time[0]) / (len(time) - 1)
     t = (time - time[0]) / step
     differences, jerk, inside, weights = _third_differences(t)
     data = differences @ values
     free = data.size
     floor = max(floor, (ROUNDING * float(np.ptp(values, axis=0).max(initial=0.0))) ** 2, np.finfo(float).tiny)
+    # both matrices are symmetric, with at most three diagonals below the main one
     squares = [np.asarray((differences @ differences.T).diagonal(-k)) for k in range(4)]
     overlaps = [np.asarray((jerk.T @ jerk.multiply(weights[:, None])).diagonal(-k)) for k in range(4)]
     band = [np.array([np.pad(row, (0, len(data) - len(row))) for row in rows]) for rows in (squares, overlaps)]
@@ -80,11 +82,13 @@ def smooth(time: Array, values: Array, floor: float = 0.0, memory: float | None 
             return data, floor, np.inf
         weighted = cho_solve_banded((factor, True), data)
         total = float((data * weighted).sum())
+        # for each lambda the likeliest variance is known in closed form, so that one number is searched for
         variance = max(total / free, floor)
         determinant = 2 * values.shape[1] * float(np.log(factor[0]).sum())
         return weighted, variance, total / variance + free * np.log(variance) + determinant
 
     if memory is None:
+        # the likelihood may have several maxima: a coarse grid first, then a search around its best
         tried = np.log(SMOOTHNESS)
         best = tried[np.argmin([solved(each)[2] for each in SMOOTHNESS])]
         ends = (max(tried[0], best - (tried[1] - tried[0])), min(tried[-1], best + (tried[1] - tried[0])))
@@ -94,6 +98,7 @@ def smooth(time: Array, values: Array, floor: float = 0.0, memory: float | None 
         smoothness = (memory / step) ** -6
     weighted, variance, _ = solved(smoothness)
     value = values - differences.T @ weighted
+    # the optimal jerk is the sum of the splines B_j, with the multipliers A^-1 d as weights
     third = smoothness * (jerk @ weighted).reshape(len(t) - 1, 3, -1)
     rate, acceleration = _rates(t, value, third, inside, weights.reshape(-1, 3))
     return Smoothed(value, rate / step, acceleration / step**2, step, variance, step * smoothness ** (-1 / 6))
@@ -110,6 +115,7 @@ def smooth_turns(time: Array, rotation: Rotation, floor: float = 0.0) -> tuple[R
 
     smoothed, rate, memory = rotation, np.zeros((len(time), 3)), None
     for again in range(3):
+        # the last pass keeps the second one's smoothing, and corrects the coning only
         turns = (smoothed[:-1].inv() * smoothed[1:]).as_rotvec()
         turns -= (np.diff(time) ** 2 / 12)[:, None] * np.cross(rate[:-1], rate[1:])
         angle = np.concatenate([np.zeros((1, 3)), np.cumsum(turns, axis=0)])
@@ -135,6 +141,7 @@ def _third_differences(t: Array) -> tuple:
     inside, steps = (1 + GAUSS[0]) / 2, np.diff(t)
     points = (t[:-1, None] + steps[:, None] * inside).ravel()
     knots = np.concatenate([[t[0]] * 2, t, [t[-1]] * 2])
+    # natural splines: those that reach beyond the ends are left out
     basis = BSpline.design_matrix(points, knots, 2)[:, 2 : n - 1]
     jerk = basis @ diags_array(3 / (t[3:] - t[:-3]))
     return differences, jerk, inside, (steps[:, None] * GAUSS[1] / 2).ravel()
@@ -143,6 +150,7 @@ def _third_differences(t: Array) -> tuple:
 def _rates(t: Array, value: Array, third: Array, inside: Array, weights: Array) -> tuple[Array, Array]:
     """Return first and second derivatives at all times, from the values and the third derivative in between."""
     steps = np.diff(t)[:, None]
+    # Taylor's remainder: what the third derivative adds to the next value and to the one before
     ahead = np.einsum("kg,kga->ka", weights * (1 - inside) ** 2 / 2, third) * steps**2
     behind = np.einsum("kg,kga->ka", weights * inside**2 / 2, third) * steps**2
     slope = np.diff(value, axis=0) / steps
@@ -153,6 +161,7 @@ def _rates(t: Array, value: Array, third: Array, inside: Array, weights: Array) 
     bend[1:-1] = 2 * (forwards - backwards) / (before + after)
     jerk = [np.einsum("g,ga->a", weights[k] * part, third[k]) for k, part in ((0, inside), (-1, 1 - inside))]
     whole = [np.einsum("g,ga->a", weights[k], third[k]) for k in (0, -1)]
+    # the ends have a neighbour on one side only: integrate the third derivative from there
     for end, near, sign in ((0, 1, -1), (-1, -2, 1)):
         step = steps[end]
         bend[end] = bend[near] + sign * whole[end]

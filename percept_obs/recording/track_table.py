@@ -105,13 +105,13 @@ def fields_of_recordings(
 
 
 def refuse_parts(gap: float, shortest: float) -> None:
-    """Refuse what splits no track, in seconds."""
+    """Raise ValueError unless gap and shortest length, in seconds, can divide tracks into parts."""
     if not gap > 0 or not 0 <= shortest < math.inf:
         raise ValueError(f"the gap is {gap} s and shortest is {shortest} s; expected a positive gap, and 0 or more")
 
 
 def runs(time: Array, samples: Indices, gap: float) -> list[Indices]:
-    """Parts of some samples without a longer gap, in seconds."""
+    """Divide indices of samples where a gap is longer than so many seconds."""
     ends = np.flatnonzero(np.diff(time[samples]) > gap) + 1
     return [run for run in np.split(samples, ends) if len(run)]
 

@@ -31,7 +31,7 @@ UTIAS_CUT = Path(__file__).parent / "utias_cut" / "dataset3_cut.mat"
 """Cut of the recording that comes with this package: all poses, and all tracks of 3 s or more."""
 UTIAS_VARIABLE = "PERCEPT_OBS_UTIAS"
 
-PIXEL_SIGMA = 4.0  # pixels to which a measured one agrees with the poses
+PIXEL_SIGMA = 4.0  # pixels, standard deviation of an image point from where the poses predict it
 
 
 @checked

@@ -327,7 +327,7 @@ class StructureAndMotion(OnePoint):
 
     @cached_property
     def lengths(self) -> tuple[int, ...]:
-        """Power of length of each coordinate and of the scale, by its value when all velocities are twice as large."""
+        """Power of the unit of length in each coordinate and the scale, found by doubling all lengths."""
         double = {d_s: d_s / 2} | {velocity: 2 * velocity for velocity in (*CAMERA, *OBJECT)}
         products = (*OUTPUTS, *self.theta, *self.parameters)
         return tuple(int(sp.log(e.subs(double, simultaneous=True) / e, 2)) for e in products)

@@ -107,13 +107,14 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
         raise ValueError("image points are not finite; leave out the pictures in which one was lost")
     if np.linalg.matrix_rank(reference - reference.mean(axis=0), tol=1e-9) < 2:
         raise ValueError("the points lie on a line in the reference picture; take points that span the patch")
-    to_reference, to_images = _normalising(reference), _normalising(images)
-    p = np.insert(images, 2, 1.0, axis=-1) @ np.swapaxes(to_images, -1, -2)
-    m = np.broadcast_to(np.insert(reference, 2, 1.0, axis=-1) @ to_reference.T, p.shape)
+    unit_from_reference, unit_from_images = _unit_from_points(reference), _unit_from_points(images)
+    p = np.insert(images, 2, 1.0, axis=-1) @ np.swapaxes(unit_from_images, -1, -2)
+    m = np.broadcast_to(np.insert(reference, 2, 1.0, axis=-1) @ unit_from_reference.T, p.shape)
     if np.linalg.svd(_equations(m, m), compute_uv=False)[..., 7].min(initial=np.inf) < 1e-9:
         raise ValueError("the points of the reference picture determine no map; take four, no three on a line")
     solution = np.linalg.svd(_equations(m, p))[2][..., -1, :]
-    H = np.linalg.inv(to_images) @ solution.reshape(*solution.shape[:-1], 3, 3) @ to_reference
+    unit_images_from_unit_reference = solution.reshape(*solution.shape[:-1], 3, 3)
+    H = np.linalg.inv(unit_from_images) @ unit_images_from_unit_reference @ unit_from_reference
     H = H / np.linalg.svd(H, compute_uv=False)[..., 1, None, None]
     depths = H[..., 2, :] @ np.insert(reference, 2, 1.0, axis=-1).T
     return H * np.sign(depths.sum(axis=-1))[..., None, None]
@@ -127,8 +128,8 @@ def _equations(m: Array, p: Array) -> Array:
     return np.concatenate([first, second], axis=-2)
 
 
-def _normalising(points: Array) -> Array:
-    """Similarity after which the points' centre is 0 and their root mean square distance to it sqrt(2)."""
+def _unit_from_points(points: Array) -> Array:
+    """Return the similarity after which the points' centre is 0 and their root mean square distance to it sqrt(2)."""
     centre = points.mean(axis=-2)
     squares = np.sum((points - centre[..., None, :]) ** 2, axis=-1)
     scale = np.sqrt(2 / squares.mean(axis=-1))

@@ -29,7 +29,7 @@ STARTS = (0.5, 0.25, 0.75)
 """Shares of the ranges, in powers of ten, from which the largest likelihood is looked for."""
 
 NEEDED = 1.92
-"""Fall of the log-likelihood from which on a gain is not 0: half the 95 % quantile of chi-squared with one degree."""
+"""Least fall of the log-likelihood without a gain at which it is kept: half the 95 % quantile of chi-squared."""
 
 
 @checked

@@ -33,16 +33,16 @@ if TYPE_CHECKING:
 
 NOT_RUN, DONE, NOT_IN_FRONT = range(3)
 STATUS = ("not_run", "done", "not_in_front")
-"""States of a run, in the order of their numbers; without a point in front of the camera throughout there is none."""
+"""Status of a run by its number; no run is made of a point that does not stay in front of the camera."""
 
 CAMERA = {"noise": "1", "period": "s", "dropout": "1"}
 """Settings of a camera that can vary, with units; the noise is its bound or its standard deviation."""
 
 MOST_AT_ONCE = 2_000_000
-"""Numbers of samples and truths that are kept at once, 16 MB."""
+"""Largest number of values of samples and truths that are in memory at once, 16 MB."""
 
 SAFETY_FACTOR = 4.0
-"""Safety factor against crossing zero between samples: distance over its largest change from sample to sample."""
+"""Least ratio of a distance to its largest change between samples at which it surely stays positive between them."""
 
 Columns = Mapping[str, Array]
 """Values of what varies, one for each of L runs, by name; always with "seed"."""
@@ -107,7 +107,7 @@ class Plan:
 
     @cached_property
     def scale(self) -> Array:
-        """Factors of the coordinates by the scenario's unit of length, shape (n,)."""
+        """Factors that turn coordinates in metres into those in the scenario's unit of length, shape (n,)."""
         surface = self.scenario.surface
         return self.scenario.unit ** -np.array(surface.lengths[: len(surface.coordinates)], dtype=float)
 
@@ -206,7 +206,7 @@ class Plan:
         return scene, np.stack(found)
 
     def _moves(self, columns: Columns, period: float) -> tuple[Array, Array, Array]:
-        """Points, maps to the next sample and surfaces' numbers; first coordinates; |A| times the period."""
+        """Return rows of each run's point, map to the next sample and surface; first coordinates; |A| by the period."""
         scenario, surface = self.scenario, self.scenario.surface
         values = {name: _column(columns, name, value) for name, value in numbers_of(scenario).items()}
         point = [values[symbol.name] for symbol in POINT]

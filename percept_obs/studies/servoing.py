@@ -37,6 +37,7 @@ INTERACTION = SYSTEM.rate[:2, :].jacobian(VELOCITIES)
 """Interaction matrix L of y' = L (v_c, w_c) for a point at rest, shape (2, 6), derived."""
 
 KNOWN = (*SYSTEM.coordinates, *SYSTEM.motion.parameters)
+"""Arguments of functions of one point: its coordinates and the velocities."""
 GOAL = np.array([[x, y, 1.0] for x in (-0.2, 0.2) for y in (-0.2, 0.2)])
 """Where the four points shall be in the camera's frame, in metres."""
 
@@ -162,7 +163,7 @@ def _in_sight(points: Array) -> Flags:
 
 
 def _functions(observer: Observer, period: float) -> tuple[Any, Any, Any]:
-    """An observer's start, its way from sample to sample, and its inverse depth, for arrays of starts and points."""
+    """Return functions that start an observer, take it to the next sample, and give its inverse depth, on arrays."""
     form, eq, gains = observer.form, observer.equations, observer.gain_values
     symbols, parts = (*eq.state, *form.x1, *form.parameters), math.ceil(period / LONGEST_STEP - STEP_ROUNDING)
     begins = vectorised(

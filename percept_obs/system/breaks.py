@@ -11,6 +11,7 @@ from sympy.core.relational import Relational
 from percept_obs.compile import vectorised
 
 INTERVALS, HALVINGS, MOST = 20_000, 34, 10_000
+"""Intervals that are searched for a break, halvings of one that has it, and most breaks that are told."""
 
 
 @lru_cache(maxsize=64)
@@ -35,6 +36,7 @@ def breaks_of(time: sp.Symbol, expressions: tuple[sp.Expr, ...], until: float) -
         return ()
     values, times = vectorised((time,), switches), np.linspace(0, until, INTERVALS + 1)
     with np.errstate(all="ignore"):
+        # a break is where what decides on a branch changes its sign; bisect all breaks at once
         signs = np.sign(values(times))
         which, k = np.nonzero((signs[:, 1:] != signs[:, :-1]) & np.isfinite(signs[:, 1:] + signs[:, :-1]))
         low, high, before = times[k], times[k + 1], signs[which, k]

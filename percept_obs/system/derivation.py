@@ -45,11 +45,11 @@ class Step:
 
     @property
     def leads_on(self) -> bool:
-        """True if `onward` is known."""
+        """True if `onward` can compute the result from other values of this step."""
         return self.follows is not None
 
     def onward(self, values: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
-        """Result of the whole derivation, a column, from other values of this step, where it `leads_on`."""
+        """Return the result of the whole derivation, a column, if this step had other values; see `leads_on`."""
         if self.follows is None:
             raise ValueError(f"it is not known what follows from {self.reason!r}; ask `leads_on` first")
         return self.follows(values)

@@ -158,7 +158,7 @@ class PartitionedSystem:
 
 
 def _called(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """Return a matrix that knows its name, by which a formula with another name is told from it."""
+    """Return a copy of a matrix that carries its name, w, phi or g, so that `check` refuses a line for another one."""
     matrix = sp.ImmutableMatrix(matrix)
     vars(matrix)["called"] = name
     return matrix
@@ -214,7 +214,7 @@ class CanonicalForm(PartitionedSystem):
 
     @property
     def culprits(self) -> tuple[str, ...]:
-        """Empty."""
+        """No names, since the form exists."""
         return ()
 
     @cached_property

@@ -103,7 +103,7 @@ class Motion:
 
     @cached_property
     def _scales(self) -> bool:
-        """True if all lengths are parameters."""
+        """True if b is proportional to its parameters, so that its lengths can be converted."""
         twice = self.b.xreplace({symbol: 2 * symbol for symbol in self.b.free_symbols - self.A.free_symbols})
         return bool((twice - 2 * self.b).expand().is_zero_matrix)
 

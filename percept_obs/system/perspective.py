@@ -232,7 +232,7 @@ class PerspectiveSystem:
         return self._velocity_along(self.surface.ray)
 
     def _velocity_along(self, ray: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
-        """A m + b eta, with the ray m."""
+        """Return A m + b eta, eta times the velocity of the point m / eta on the ray m."""
         return self.motion.A * sp.ImmutableMatrix(ray) + self.motion.b * self.surface.inverse_distance
 
     def _seen_on_the_ray(self, velocity: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
@@ -257,7 +257,7 @@ def gradients_on(surface: ImagingSurface) -> sp.ImmutableMatrix:
 
 
 def _with_plain_angles(entry: sp.Expr, surface: ImagingSurface) -> sp.Expr:
-    """An entry on the ray, with u in place of atan2(|sin(u)|, cos(u)): a root is an angle from 0 to pi."""
+    """Return an entry with u in place of atan2(|sin(u)|, cos(u)), which equals it for the angle u from 0 to pi."""
     for y, image in zip(surface.image_coordinates, surface.image, strict=True):
         if isinstance(image, sp.asin | sp.atan):  # from -pi/2 to pi/2
             entry = entry.xreplace({sp.Abs(sp.cos(y)): sp.cos(y)})
@@ -269,6 +269,6 @@ def _with_plain_angles(entry: sp.Expr, surface: ImagingSurface) -> sp.Expr:
 
 @lru_cache(maxsize=64)
 def _image_over_distance(surface: ImagingSurface) -> sp.ImmutableMatrix:
-    """Gradient of the image times the distance; without symbols if that is linear in the point."""
+    """Gradient of the product of image and distance, on the ray; constant if the product is linear in the point."""
     y, gradients = sp.ImmutableMatrix(surface.image_coordinates), gradients_on(surface)
     return (gradients[:-1, :] + y * gradients[-1, :]).applyfunc(sp.cancel)

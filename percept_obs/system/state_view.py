@@ -102,12 +102,12 @@ class StateView(OnePoint):
 
     @property
     def values(self) -> Mapping[sp.Symbol, float]:
-        """Empty."""
+        """No numbers, since there are no constants."""
         return {}
 
     @cached_property
     def lengths(self) -> tuple[int, ...]:
-        """Power of length of each coordinate, by its value in a world that is twice as large."""
+        """Power of the unit of length in each coordinate, found by doubling all lengths of the state."""
         some = np.arange(3.0, len(self.state) + 3)
         small, large = (self.project(some * 2.0 ** (k * np.array(self.powers))) for k in (0, 1))
         return tuple(np.log2(large / small).round().astype(int).tolist())
@@ -122,7 +122,7 @@ class StateView(OnePoint):
         return np.stack(vectorised(self.state, list(self.formulas.values()))(*columns), axis=-1)
 
     def locate(self, coordinates: ArrayLike) -> Array:
-        """First entries of the state, up to three of the power 1: the place, shape (..., 2) or (..., 3)."""
+        """Positions, shape (..., 2) or (..., 3): the state's first entries, as many as are lengths, at most three."""
         columns = np.moveaxis(np.asarray(coordinates, dtype=float), -1, 0)
         return np.stack(vectorised(self.coordinates, self.back[: min(3, sum(self.powers))])(*columns), axis=-1)
 

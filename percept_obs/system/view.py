@@ -48,7 +48,7 @@ class View(Protocol):
 
     @property
     def lengths(self) -> tuple[int, ...]:
-        """Power of length of each coordinate, and then of each parameter."""
+        """Power of the unit of length in each coordinate, and then in each parameter: -1 for 1/m."""
 
     def fits(self, other: Any) -> bool:
         """Return True if formulas for this view hold for the other."""
@@ -85,7 +85,7 @@ class OnePoint(ABC):
     @property
     @abstractmethod
     def lengths(self) -> tuple[int, ...]:
-        """Power of length of each coordinate, and then of each parameter."""
+        """Power of the unit of length in each coordinate, and then in each parameter: -1 for 1/m."""
 
     @abstractmethod
     def inverse(self, coordinates: ArrayLike) -> Array:

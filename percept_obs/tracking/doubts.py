@@ -27,7 +27,7 @@ SPLIT = 500
 
 
 def images_backwards(recording: Recording, first: int, columns: list[int]) -> Callable[[Array], Array]:
-    """Some outputs at the samples from one on, shape (K - first, m), from the coordinates at the end and the doubts.
+    """Return a function from the coordinates at the end and the doubts to some outputs at the samples from `first` on.
 
     The translation b becomes (1 + a s) b + d x b, with the drift a, the direction's error d, and s from -1 at the first
     sample of the recording to 0 at its end.  Images do not change when the point and b are scaled, so that the flow of

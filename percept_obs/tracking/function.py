@@ -84,11 +84,11 @@ class FunctionObserver:
     """None, as tables ask for them."""
 
     def refusal(self, form: PartitionedSystem) -> str:
-        """Reason against a form in tables of families; none here, for `track` says it of each recording."""
+        """Return no reason against any form: whether it fits is found by `track`, with a recording."""
         return ""
 
     def __call__(self, form: PartitionedSystem) -> FunctionObserver:
-        """Itself, where tables make observers of a form."""
+        """Return the observer itself, so that tables can call it like a family."""
         return self
 
 
@@ -129,7 +129,7 @@ def _follow_by_function(
     claims = None if observer.covariance is None else np.full((len(recording.time), n, n), np.nan)
 
     def asked(part: str, shape: tuple[int, ...] | None, *arguments: Any) -> Array:
-        """Result of one of the functions; NaN where its numbers give out."""
+        """Return the result of one of the observer's functions; NaN if it divides by zero or a matrix is singular."""
         try:
             with np.errstate(all="ignore"):
                 found = np.asarray(getattr(observer, part)(*arguments), dtype=float)

@@ -235,7 +235,7 @@ class Run:
 
     @cached_property
     def effective_variance(self) -> float:
-        """Variance of white noise as bad as what this run left of the samples, and at least the recording's own.
+        """Variance of white noise that harms an estimate as much as this run's residuals; at least the recording's.
 
         Errors of poses that stay alike for long are found so, of which nobody told: take it as the `noise_variance` of
         a second run.

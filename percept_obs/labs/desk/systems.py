@@ -32,7 +32,7 @@ def system_of(motion: str, surface: str) -> PerspectiveSystem:
 
 @lru_cache
 def observer_of(system: PerspectiveSystem, outputs: tuple[str, ...], name: str) -> Observer:
-    """Return an observer of a system, without terms whose gains are 0, for nothing that is given tells of these.
+    """Return an observer of a system without terms whose gains are 0, which no sheet explains.
 
     A ValueError says if there is none for these measured outputs.
     """
@@ -58,7 +58,7 @@ def system_of_student(student: str) -> tuple[PerspectiveSystem, tuple[str, ...]]
 
 
 class _Draw:
-    """Choices from one large number."""
+    """Draws choices one after another from the digits of one large number."""
 
     def __init__(self, number: int) -> None:
         self.number = number
@@ -96,9 +96,9 @@ ROUNDS, DRAWS, SIDE = 8, 1000, np.linspace(-0.9, 0.9, 7)
 
 @lru_cache(maxsize=64)
 def numbers_of(system: PerspectiveSystem) -> dict[sp.Symbol, float]:
-    """Return numbers for the letters of a system, by which each term of the image's motion brings a line nearer.
+    """Return numbers for a system's letters with which each right term brings the drawn motion nearer to the true one.
 
-    What brings a line nearer takes it further away if its sign is wrong.  Of many draws the one is taken in which the
+    With a wrong sign the term takes it further away.  Of many draws the one is taken in which the
     term that helps least helps most, in any order of the terms multiplied out; if there is no such draw, in the order
     of the formula as it is printed.
     """
@@ -117,7 +117,7 @@ def numbers_of(system: PerspectiveSystem) -> dict[sp.Symbol, float]:
 
 
 def _gain_of(system: PerspectiveSystem, letters: list[sp.Symbol]) -> Callable[[Array], Array]:
-    """Return what the least helpful term gains, of each draw; 1 and more if it does so in any order."""
+    """Return a function of draws: how much nearer the least helpful term brings the motion, plus 1 if in any order."""
     names = [f"{s.name}'" for s in system.surface.image_coordinates]
     derived = [step.values[name] for step in system.derivation() for name in names if name in step.values]
     rates = [in_letters(rate) for rate in derived]
@@ -142,7 +142,7 @@ def _sizes(terms: Sequence[sp.Expr], system: PerspectiveSystem, letters: list[sp
 
 
 def _least(sizes: Array, ordered: bool) -> Array:
-    """Return the least gain by a term, as mean squares and as a part of all; -1 where it is no number."""
+    """Return for each draw how much the least helpful term lowers the squared error, as a share of all; or -1."""
     products = np.einsum("kdp,jdp->dkj", sizes, sizes)
     against = np.triu(products, 1) if ordered else np.minimum(products - products * np.eye(len(sizes)), 0)
     gained = np.einsum("dkk->dk", products) + 2 * against.sum(axis=2)

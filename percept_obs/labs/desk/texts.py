@@ -93,7 +93,7 @@ def _step(sheet: Sheet, number: int) -> Texts:
 
 
 def _onward(sheet: Sheet, step: Step, count: int) -> dict[int, str]:
-    """Return what follows from the lines of a step, called q1, q2 and so on, by the rows of the result."""
+    """Return the derivation's result in a step's lines, named q1, q2, ..., by its rows; empty if it is not known."""
     if not step.leads_on:
         return {}
     values = sp.symbols(f"q1:{count + 1}", real=True)

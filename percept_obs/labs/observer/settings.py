@@ -19,7 +19,7 @@ SCENARIOS = {
     make.__name__: make for make in (scenarios.drive, scenarios.ma2005_eq35, scenarios.ma2005_eq36, scenarios.planar)
 }
 FIRST_GUESS = 6.0
-"""Metres from the camera at which the estimate of a drive starts: not where the point is, and in the picture."""
+"""Metres from the camera at which the estimate of a drive starts: wrong, but near enough to be drawn."""
 HOLDS = ("zero", "first", "exact")
 LOOKS = view_of(
     groups=("observers", "gains", "scene", "camera", "start"),

@@ -46,7 +46,7 @@ STEP_WORK, STEP_WORK_WITH_P = 10, 20
 """Times that a state of many points takes Python longer than one of a single point: alone, and with a P to compute."""
 
 CALL_WORK = 26
-"""Work of one call of a motion that varies by a solver, for one path."""
+"""Cost of one call of a varying motion by scipy's solver, in steps times states (`MOST_WORK`), for one path."""
 
 ERROR = (0.3, -0.2, 0.5, 0.2, -0.1, 0.3)
 """Errors of the start, in metres, repeated for states with more entries."""

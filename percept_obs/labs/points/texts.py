@@ -106,7 +106,7 @@ def _state_for_the_page(name: str) -> Texts:
 
 
 def own_state_for_the_page(form: PointsForm) -> Texts:
-    """The one layout of a user's form, and its coefficients; a ValueError if the page cannot move it."""
+    """Return the layout and coefficients of a user's form as texts; raise ValueError if the page cannot move it."""
     motion, n = form.motion, form.states
     rows, columns = form.layout.rows, form.layout.columns
     if n % 3 or form.points > MOST_POINTS or ((columns < n) & (rows // 3 != columns // 3)).any():
@@ -137,7 +137,7 @@ def own_state_for_the_page(form: PointsForm) -> Texts:
 
 
 def _layout(form: PointsForm, states: int, points: int) -> Texts:
-    """Positions of a state's coefficients when it has so many of the points, and the states' names."""
+    """Return places of the entries of [A, v] and C_k for the first states and points, and the states' names."""
     found = arrays(form, np.arange(states), np.arange(points))
     plain = {name: getattr(found, name).tolist() for name in found._fields if name not in ("shape", "block")}
     return {**plain, "names": list(form.names[:states])}

@@ -29,7 +29,7 @@ def window_in(recording: Recording, asked: float) -> float:
 
 
 def offering(kind: Kind, names: Iterable[str]) -> Kind:
-    """A choice of one or of several names, of other ones."""
+    """The same choice, with other names to choose from."""
     assert isinstance(kind, Choice | Names)
     return replace(kind, names=tuple(names))
 

@@ -155,7 +155,7 @@ def _cascade_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] =
 
 
 def constants_equations(Phi: Any, xi: Any, A: Any, b: Any, phi: Any, r: Any, Q: Any, Y: Any, lost: Any) -> Matrices:
-    """The observer of constants, without bias of noise: what is known of the motion, and of the constants."""
+    """The observer of constants without bias of noise: rates of Phi and xi, from the motion, and of Q and Y."""
     return {"Phi'": A * Phi, "xi'": A * xi + b, "Q'": phi.T * phi - lost * Q, "Y'": phi.T * r - lost * Y}
 
 
@@ -212,9 +212,11 @@ def _turning_lines(letters: Mapping[str, sp.Symbol], zero: Sequence[sp.Symbol] =
 
 X2 = sp.Symbol("x2")
 _OFFSET = formula(sp.Symbol("f_0"), sp.Matrix([sp.Symbol("phi"), sp.Function("g")(0)]))
+"""Definition of f_0, the rate of (x1, x2) at x2 = 0."""
 IN_MATRICES: Mapping[Callable[..., Observer], Callable[..., list[str]]] = {
     extended_kalman: _kalman_lines,
     linear_approximation: _cascade_lines,
     gpebo: _constants_lines,
     equivariant_filter: _turning_lines,
 }
+"""For observers with a matrix as their state: the function that writes their equations in matrices."""

@@ -264,6 +264,7 @@ class Lab(anywidget.AnyWidget):
 
 
 _open: dict[str, tuple[str, list[weakref.ref[Lab]]]] = {}
+"""By the name of a cell: the name of its last run, and the labs that are shown by it."""
 
 
 def _close_those_of_an_earlier_run(lab: Lab) -> None:

@@ -20,7 +20,7 @@ Parts = Iterable[tuple[str, Texts]]
 """Texts by their place: "" for what stands in the model itself, "forms/pinhole y1" for an entry of its forms."""
 
 LINES = "\n"
-"""Key of a text that is given by the numbers of its lines."""
+"""Key under which a text of several lines stands as the numbers of these lines, which texts share."""
 
 
 def file_of(kind: str) -> Path:

@@ -46,6 +46,7 @@ ENDED = "percept-obs-ended"
 """DOM class of the hint in place of a lab whose kernel has ended."""
 
 _LOST = ".jp-OutputArea:not(:has(.percept-lab)):has(.jp-OutputArea-output.jupyter-widgets)"
+"""CSS selector of an output whose widget has no kernel any more."""
 _IN_ITS_PLACE = f"""<div class="{ENDED}">
 <style>
 body:has(.percept-lab) .{ENDED}, .jp-OutputArea .{ENDED} {{{{ display: none; }}}}

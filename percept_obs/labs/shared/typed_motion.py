@@ -20,6 +20,7 @@ from percept_obs.system.motion import TIME
 from percept_obs.validation import expression
 
 MOST = 400
+"""Largest number of characters of a motion over time."""
 LONGEST = 200.0
 """Seconds up to which the page knows where a motion over time jumps."""
 INSTANTS = 501
@@ -115,7 +116,7 @@ def _branches(text: str) -> str:
 
 
 def _step(*values: sp.Expr) -> sp.Expr:
-    """0 before, and 1 from where a number is no longer negative."""
+    """Return an expression that is 0 where a number is negative, and 1 elsewhere."""
     if len(values) != 1 or hasattr(values[0], "shape"):
         raise ValueError("step is of one number, such as step(t - 2)")
     return sp.Piecewise((1, values[0] >= 0), (0, True))

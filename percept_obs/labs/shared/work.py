@@ -16,7 +16,7 @@ MOST_WORK = 300_000
 """Steps times states that Python computes in about a second."""
 
 CALL_WORK = 16
-"""Work of one call of a motion that varies by a solver, for the two paths of a recording."""
+"""Cost of one call of a varying motion by scipy's solver, in the unit of `MOST_WORK`, for a recording's two paths."""
 
 CALLS_PER_SAMPLE = 15
 """Least calls of a sampled motion by a solver between two samples."""
@@ -26,7 +26,7 @@ MOMENT = 1e-5
 
 
 def motion_work(motion: Motion, duration: float, period: float) -> float:
-    """Work of moving a point for `duration` seconds and sampling it every `period` seconds."""
+    """Cost of moving a point for `duration` seconds and sampling it every `period`, in the unit of `MOST_WORK`."""
     rows = motion.known(np.linspace(0, duration, INSTANTS))
     A = np.stack(vectorised(motion.parameters, tuple(motion.A))(*rows.T), axis=-1)
     fastest = float(np.abs(A.reshape(-1, 3, 3)).sum(axis=2).max())
@@ -37,7 +37,7 @@ def motion_work(motion: Motion, duration: float, period: float) -> float:
 
 
 def solver_calls(known: Callable[[Array], Array] | None, duration: float, fastest: float, motion: Motion) -> float:
-    """About how often a solver calls a motion that varies, and at least at its samples, over a duration in seconds.
+    """Estimate how often a solver calls a varying motion over a duration in seconds, at least some times a sample.
 
     `known` gives the numbers that may swing fast, and `fastest` is the largest sum of the absolute values of a row of
     A.
@@ -61,7 +61,7 @@ def too_much(work: float, duration: float = np.inf, period: float = 0.0) -> str:
 
 
 def within_reach(steps: float, states: Mapping[str, float], before: float = 0.0) -> tuple[list[str], list[str]]:
-    """Names of the observers, of so many states, that Python runs after other work, and a sentence on the rest."""
+    """Names of the observers that Python has time to run, by their numbers of states, and a sentence on the others."""
     names, work = [], before
     for name, count in states.items():
         if work + steps * count <= MOST_WORK:

@@ -236,7 +236,7 @@ def _steps(settings: Settings) -> float:
 
 
 def _used(settings: Settings, samples: Motion | None) -> Motion | None:
-    """The samples, where the settings use them."""
+    """The sampled velocities if the settings use them, else None."""
     return samples if settings["velocities"] == "samples" else None
 
 

@@ -142,12 +142,12 @@ class ImagingSurface(OnePoint):
 
     @property
     def radii(self) -> dict[sp.Symbol, sp.Symbol]:
-        """Unknown radii in the image, and the sizes at which they are seen; none but with `sized`."""
+        """Symbols of unknown radii, each with the output that shows its size; empty but with `sized`."""
         return {}
 
     @cached_property
     def lengths(self) -> tuple[int, ...]:
-        """Power of length of each coordinate, by its value when the point is twice as far; 0 for the parameters."""
+        """Power of the unit of length in each coordinate, found by doubling the distance; 0 for parameters."""
         points = np.array([SOME_POINT, [2 * entry for entry in SOME_POINT]], dtype=float)
         near, far = np.stack(self._evaluate(POINT, (*self.image, 1 / self.distance), points), axis=-1)
         return (*np.log2(far / near).round().astype(int).tolist(), *(0 for _ in self.parameters))
@@ -159,7 +159,7 @@ class ImagingSurface(OnePoint):
 
     @property
     def multiplied_out(self) -> bool:
-        """True if rates are expanded: the distance is one coordinate of the point."""
+        """True if rates are to be multiplied out, which keeps them short if the distance is X, Y or Z."""
         return self.distance in POINT
 
     def project(self, points: ArrayLike) -> Array:
@@ -273,13 +273,14 @@ class ImagingSurface(OnePoint):
 
 
 SOME_POINT = tuple(map(sp.Rational, ("0.2", "0.3", "1.7")))
+"""A point in metres at which a surface's image and ray are tested against each other."""
 
 
 @lru_cache(maxsize=64)  # surfaces are made anew again and again, with the same formulas
 def _found_again(
     image: tuple[sp.Expr, ...], distance: sp.Expr, ray: tuple[sp.Expr, ...], parameters: tuple[sp.Symbol, ...]
 ) -> tuple[sp.Expr, ...]:
-    """Point on the ray at the image of a point, at its distance; parameters get some numbers."""
+    """Return where the ray puts `SOME_POINT`, from its image and distance: there again if the ray is right."""
     point = dict(zip(POINT, SOME_POINT, strict=True))
     shape = {symbol: sp.Rational(k + 2, 7) for k, symbol in enumerate(parameters)}
     images = sp.symbols(f"y1:{len(image) + 1}", real=True)

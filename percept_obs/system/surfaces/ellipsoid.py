@@ -19,7 +19,7 @@ class zeta(Intermediate):
 
     @staticmethod
     def value(y1: sp.Expr, y2: sp.Expr, *shape: sp.Expr) -> sp.Expr:
-        """Return the larger root."""
+        """Return zeta as an expression, the larger root of X^T Q X = 1."""
         q11, q12, q13, q22, q23, q33 = shape
         slope = q13 * y1 + q23 * y2
         return (sp.sqrt(slope**2 + q33 * (1 - q11 * y1**2 - 2 * q12 * y1 * y2 - q22 * y2**2)) - slope) / q33

@@ -12,7 +12,7 @@ class mu(Intermediate):
 
     @staticmethod
     def value(y1: sp.Expr, y2: sp.Expr, xi: sp.Expr) -> sp.Expr:
-        """Return the root on the side of the scene."""
+        """Return mu as an expression, the root that lifts to the scene's side of the sphere."""
         squared = y1**2 + y2**2
         return (xi + sp.sqrt(1 + (1 - xi**2) * squared)) / (1 + squared)
 

@@ -8,7 +8,7 @@ import { cameraAbove, carAbove, metres, WIDE } from "./marks.js";
 
 /** Which figure is drawn: the others are 0 and 2. */
 const [SMALL, RIGHT, LARGE, ESTIMATE] = [0, 1, 2, 3];
-/** Seconds whose way an arrow of a velocity is, and pixels from the middle of a camera to its rim. */
+/** Seconds of motion that the length of a velocity's arrow shows, and pixels from a camera's middle to its rim. */
 const [AHEAD, RIM] = [1.5, 11];
 /** Parts into which a way is divided. */
 const PARTS = 40;
