@@ -74,7 +74,15 @@ SCHEMA = Schema(
     ),
     duration=Number(30.0, 1, LONGEST, (4, 60), 1, unit="s"),
     window=Number(
-        8.0, 0.1, 120, (0.5, 20), 0.5, unit="s", label="window T", about=f"window of the Gramian, {AT_LEAST}", topic="charts"
+        8.0,
+        0.1,
+        120,
+        (0.5, 20),
+        0.5,
+        unit="s",
+        label="window T",
+        about=f"window of the Gramian, {AT_LEAST}",
+        topic="charts",
     ),
     kept=KEPT,
 )
