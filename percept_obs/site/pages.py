@@ -135,15 +135,16 @@ def public() -> dict[str, list[tuple[list[str], object]]]:
     seen: set[int] = set()
     for module in MODULES:
         names: dict[int, list[str]] = {}
-        values = vars(import_module(module))
+        imported = import_module(module)
         own = [
             name
-            for name, value in values.items()
+            for name, value in vars(imported).items()
             if name[0] != "_" and getattr(value, "__module__", "").startswith(module)
         ]
-        for name in values.get("__all__", own):
-            if getattr(values[name], "__module__", "").startswith("percept_obs") and id(values[name]) not in seen:
-                names.setdefault(id(values[name]), []).append(name)
+        values = {name: getattr(imported, name) for name in getattr(imported, "__all__", own)}
+        for name, value in values.items():
+            if getattr(value, "__module__", "").startswith("percept_obs") and id(value) not in seen:
+                names.setdefault(id(value), []).append(name)
         seen |= names.keys()
         ordered = [sorted(same, key=len, reverse=True) for same in names.values()]
         if ordered:
