@@ -235,7 +235,7 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
 
     See Also
     --------
-    percept_obs.studies.likelihood.tune_by_likelihood : Chooses gains whose claims hold.
+    percept_obs.studies.tuning.tune_by_likelihood : Chooses gains whose claims hold.
     percept_obs.figures.consistency : Draws the moving averages.
 
     Notes

@@ -16,10 +16,9 @@ from percept_obs.recording import Recording
 from percept_obs.studies.comparison import Follow, relative_distance_errors
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.following import AnyObserver, StepTooLong
-from percept_obs.tracking.run import Run
 from percept_obs.validation import bar, checked
 
-__all__ = ["Tuned", "best_setting", "log_likelihood", "tune_by_likelihood"]
+__all__ = ["Tuned", "best_setting", "tune_by_likelihood"]
 
 EDGE = 0.02
 """Share of a range, in powers of ten, within which a gain counts as being at its end."""
@@ -138,46 +137,6 @@ class Tuned:
 
 
 @checked
-def log_likelihood(runs: Sequence[Run], after: float = 0.0) -> float:
-    """Return the log-likelihood of all innovations of some runs, by the filter's own claims.
-
-    It is minus infinity if a run diverged.
-
-    Parameters
-    ----------
-    runs : sequence of Run
-        Of an observer that claims a covariance and has a measurement update.
-    after : float
-        Seconds since the first sample of each run to leave out.
-
-    Raises
-    ------
-    ValueError
-        If there is no run, or an observer claims no covariance or has no measurement update.
-
-    See Also
-    --------
-    tune_by_likelihood : Maximises it.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, ekf, pinhole, record, scenarios, track
-    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
-    >>> seen = record(scenarios.ma2005_eq35(), 4, Camera(0.05, Gaussian(0.01)), seed=1)
-    >>> [round(log_likelihood([track(seen, ekf(form, noise_variance=v))])) for v in (1e-5, 1e-4, 1e-3)]
-    [45, 488, 391]
-    """
-    if not len(runs):
-        raise ValueError("there is no run; give one at least, such as [track(recording, ekf(form))]")
-    last = min(run.elapsed[-1] for run in runs)
-    if not 0 <= after <= last:
-        raise ValueError(f"after is {after} s; it must not be negative, nor beyond a run, which lasts {last:.4g} s")
-    if any(run.diverged_at is not None for run in runs):
-        return -math.inf
-    return float(sum(np.nansum(run.log_likelihood[from_the_start(run.elapsed, after)]) for run in runs))
-
-
-@checked
 def tune_by_likelihood(
     recordings: Sequence[Recording],
     observer: Observer,
@@ -206,7 +165,8 @@ def tune_by_likelihood(
     Raises
     ------
     ValueError
-        If there are no recordings or no gains, a range is not one of positive values, or every setting diverges.
+        If there are no recordings or no gains, `after` lies outside of one, a range is not one of positive values, or
+        every setting diverges.
 
     See Also
     --------
@@ -232,6 +192,10 @@ def tune_by_likelihood(
     for name, ends in ranges.items():
         if len(ends) != 2 or not 0 < ends[0] < ends[1] < math.inf:
             raise ValueError(f"the range of {name} is {tuple(ends)}; give a smallest and a largest positive value")
+    if not 0 <= after <= (last := min(each.elapsed[-1] for each in recordings)):
+        raise ValueError(
+            f"after is {after} s; it must not be negative, nor beyond a recording, which lasts {last:.4g} s"
+        )
     names = tuple(ranges)
     low, high = np.log10(np.array([ranges[name] for name in names], dtype=float)).T
 
@@ -241,7 +205,9 @@ def tune_by_likelihood(
             warnings.simplefilter("ignore", StepTooLong)  # what chatters is not chosen
             filtered = observer.with_gains(**gains_at(place, zero))
             runs = [follow(recording, filtered) for recording in recordings]
-        return -log_likelihood(runs, after)
+        if any(run.diverged_at is not None for run in runs):
+            return math.inf
+        return -float(sum(np.nansum(run.log_likelihood[from_the_start(run.elapsed, after)]) for run in runs))
 
     def gains_at(place: tuple[float, ...], zero: tuple[str, ...] = ()) -> dict[str, float]:
         return dict(zip(names, (10.0 ** np.array(place)).tolist(), strict=True)) | dict.fromkeys(zero, 0.0)
