@@ -153,7 +153,7 @@ def _summed(rows: pd.DataFrame) -> dict[str, float]:
         if name == "trusted":
             found[name] = float(values.mean()) if len(values) else math.nan
         elif name == "over_bound":
-            found |= dict(zip((name, f"{name}_scatter"), _root_mean_square(values[np.isfinite(values)]), strict=True))
+            found |= dict(zip((name, f"{name}_scatter"), _root_mean_square(values), strict=True))
         elif AT_A_TIME.fullmatch(name):
             found[name] = float(np.median(values)) if len(values) else math.nan
             found[f"{name}_most"] = _by_rank(values, MOST)
@@ -168,10 +168,11 @@ def _by_rank(values: Array, share: float) -> float:
 
 
 def _root_mean_square(values: Array) -> tuple[float, float]:
-    """Root mean square of two values or more, and its standard deviation by leaving out one after the other."""
-    squares, count = values**2, len(values)
+    """Root mean square of the finite values, two or more, and its scatter by leaving out one after the other."""
+    squares = values[np.isfinite(values)] ** 2
+    count = len(squares)
     if count < 2:
-        return math.inf, math.nan
+        return (math.inf if len(values) else math.nan), math.nan
     without = np.sqrt((squares.sum() - squares) / (count - 1))
     return math.sqrt(squares.mean()), math.sqrt((count - 1) * np.mean((without - without.mean()) ** 2))
 

@@ -8,9 +8,9 @@ Prints the table and writes efficiencies.png.
 import sys
 
 import numpy as np
+from percept_obs.studies.efficiencies import Case, efficiencies
 
 from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, figures, pinhole, record, rigid, scenarios
-from percept_obs.studies.efficiencies import Case, efficiencies
 from percept_obs.system.inertial import camera_with_imu
 
 TUNING = range(1000, 1005)

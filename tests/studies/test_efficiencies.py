@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from efficiency_study import cases
+from percept_obs.studies.efficiencies import efficiencies
 
 from percept_obs import ekf, ibo, ismo
 from percept_obs.figures import efficiencies as drawn
-from percept_obs.studies.efficiencies import efficiencies
 
 
 @pytest.fixture(scope="module")

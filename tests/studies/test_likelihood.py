@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from examples import BOTH, ZERO
+from percept_obs.studies.likelihood import log_likelihood, tune_by_likelihood
 from sample_sizes import sampled
 from trust_study import posed
 from tuning_study import RIGID, SCENARIOS, both_ways
 
 from percept_obs import Camera, Gaussian, ekf, ibo, record, scenarios, track
 from percept_obs.recording.utias import UTIAS_CUT, load_utias
-from percept_obs.studies.likelihood import log_likelihood, tune_by_likelihood
 
 SIGMA = 0.01
 RECORDINGS = [record(scenarios.ma2005_eq35(), 3, Camera(0.06, Gaussian(SIGMA)), seed) for seed in range(3)]

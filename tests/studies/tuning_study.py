@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from distrust_study import drawn
 from examples import BOTH
+from percept_obs.studies.likelihood import tune_by_likelihood
 from sample_sizes import sampled
 
 from percept_obs import Camera, Gaussian, PerspectiveSystem, ekf, pinhole, record, rigid, scenarios, track
 from percept_obs.observers.gains import grid
 from percept_obs.studies.comparison import best_setting, relative_distance_errors
-from percept_obs.studies.likelihood import tune_by_likelihood
 
 RIGID = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
 RANGES = {"noise_variance": (1e-7, 1e-2), "process_noise": (1e-9, 1e-2), "hidden_variance": (1e-3, 10)}
