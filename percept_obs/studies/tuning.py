@@ -192,7 +192,8 @@ def tune_by_likelihood(
     for name, ends in ranges.items():
         if len(ends) != 2 or not 0 < ends[0] < ends[1] < math.inf:
             raise ValueError(f"the range of {name} is {tuple(ends)}; give a smallest and a largest positive value")
-    if not 0 <= after <= (last := min(each.elapsed[-1] for each in recordings)):
+    last = min(each.elapsed[-1] for each in recordings)
+    if not 0 <= after <= last:
         raise ValueError(
             f"after is {after} s; it must not be negative, nor beyond a recording, which lasts {last:.4g} s"
         )
