@@ -108,8 +108,6 @@ class Tuned:
         Names of gains at an end of their range, beyond which better ones may lie.
     log_likelihood : float
         Of all innovations of the recordings.
-    tried : int
-        Number of settings that were tried.
 
     See Also
     --------
@@ -128,7 +126,6 @@ class Tuned:
     gains: Mapping[str, float]
     at_edge: tuple[str, ...]
     log_likelihood: float
-    tried: int
 
     def __repr__(self) -> str:
         gains = ", ".join(f"{name} {value:.3g}" for name, value in self.gains.items())
@@ -235,4 +232,4 @@ def tune_by_likelihood(
             zero = (*zero, gain.name)
     gains, near = gains_at(best, zero), np.minimum(best - low, high - best) <= EDGE * (high - low)
     at_edge = tuple(name for name, is_near in zip(names, near.tolist(), strict=True) if is_near and gains[name])
-    return Tuned(observer.with_gains(**gains), gains, at_edge, -unlikely(best, zero), len(tried))
+    return Tuned(observer.with_gains(**gains), gains, at_edge, -unlikely(best, zero))
