@@ -119,7 +119,7 @@ def test_runs_that_are_cut_at_their_first_sample_inside_are_late_in_every_table(
     run = track(cut, ibo(BOTH), ZERO)
     assert run.outcome().kind == "late"
     assert f"until {settled:.3g} s" in run.verdict()
-    assert compare([cut], [ibo(BOTH)], ZERO)["outcome"].tolist() == ["late"]
+    assert compare([cut], [ibo(BOTH)], ZERO).table["outcome"].tolist() == ["late"]
 
 
 @pytest.mark.slow
