@@ -245,7 +245,7 @@ def compare(
     coordinates : sequence of str, optional
         Such as ("y3",), whose absolute errors are to stay within the tolerance instead.
     columns : mapping of names to functions of a run, optional
-        Further numbers, such as ``{"nis": lambda run: np.nanmean(run.nis)}``, or `over_bound`.
+        Further numbers, such as ``{"over_bound": over_bound(form)}``, or `percept_obs.studies.consistency.CLAIMS`.
     **settings
         Passed to `track`, such as ``hold`` and ``believed``.
 
