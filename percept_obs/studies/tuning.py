@@ -65,8 +65,8 @@ def best_setting(
 
     See Also
     --------
-    oldstudies.tuning.choose_and_report : chooses the gains of several observers and reports their errors
-    oldstudies.likelihood.tune_by_likelihood : chooses a filter's gains without a truth
+    tune_by_likelihood : chooses a filter's gains without a truth
+    percept_obs.studies.all_observers.all_observers : chooses the gains of every observer and reports its errors
 
     Examples
     --------
