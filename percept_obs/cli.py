@@ -131,7 +131,7 @@ def compare(options: argparse.Namespace) -> int:
     from percept_obs.observers import OBSERVERS
     from percept_obs.recording import Camera, Uniform, record
     from percept_obs.recording.scenarios import ma2005_eq35, ma2005_eq36
-    from percept_obs.studies.comparison import compare, described, summary
+    from percept_obs.studies.comparison import compare
     from percept_obs.system.motion import affine
     from percept_obs.system.perspective import PerspectiveSystem
     from percept_obs.system.surfaces import pinhole
@@ -145,13 +145,13 @@ def compare(options: argparse.Namespace) -> int:
     samples = options.seeds * options.duration / camera.period
     limit(samples * len(observers), "samples to follow", "take fewer --seeds or a shorter --duration")
     recordings = [record(scenario, options.duration, camera, seed) for seed in range(options.seeds)]
-    table = summary(compare(recordings, observers, (0.0, 0.0, 0.0), after=options.duration / 4))
+    found = compare(recordings, observers, (0.0, 0.0, 0.0), after=options.duration / 4)
     print(
         f"{scenario.name}, {options.outputs}, {options.seeds} seeds, uniform noise of +-{options.noise:g}, "
         f"{options.duration:g} s at 100 Hz, held; errors of 1/Z from {options.duration / 4:g} s on; "
         "medians with the 16 % and 84 % quantiles; a run fails if its error does not stay below 0.05"
     )
-    print(described(table))
+    print(found)
     print("\n".join(filter(None, refusals.values())))
     return 0
 

@@ -314,9 +314,9 @@ def fields(
     Examples
     --------
     >>> from percept_obs import affine, figures, sphere
-    >>> from percept_obs.studies.fields import AngleNoise, field_bound
+    >>> from percept_obs.studies.fields import field_bound
     >>> sideways = affine([[0.0] * 3] * 3, [0.5, 0, 0])
-    >>> found = field_bound(sphere(), sideways, AngleNoise(), 2.0, size=5)
+    >>> found = field_bound(sphere(), sideways, 2.0, angle=0.002, size=5)
     >>> print(figures.fields(found).text.split(". ")[1])
     sphere, y1, y2 measured: 0.53 % in the middle of the picture, 0.75 % near its edge, 0.53 to 96 % in all.
     """

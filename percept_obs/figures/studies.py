@@ -13,7 +13,7 @@ from matplotlib.ticker import NullFormatter
 from percept_obs.figures import base, curves, describe, look
 from percept_obs.figures.base import Drawing, canvas, canvases, figure, legend_above
 from percept_obs.studies.chatter import Effort
-from percept_obs.studies.comparison import summary
+from percept_obs.studies.comparison import Comparison
 from percept_obs.studies.diagnosis import Diagnosis
 from percept_obs.studies.diagnosis.causes import CAUSES
 from percept_obs.studies.sensitivity import SHARE, Sensitivity
@@ -40,8 +40,8 @@ _KEY = {
 }
 
 
-@figure("the table is empty or not from `compare`, or there are not two axes")
-def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawing:
+@figure("there are no runs or no settling times, or there are not two axes")
+def comparison(found: Comparison, axes: Sequence[Axes] | None = None) -> Drawing:
     """Settling time and root mean square error of every observer: each run, the median, and 16 to 84 % of the runs.
 
     A run that does not settle has no settling time, and one that diverged has no error: what they lack stands at the
@@ -49,7 +49,7 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawi
 
     Parameters
     ----------
-    table : pandas.DataFrame
+    found : Comparison
         From `percept_obs.studies.comparison.compare`.
 
     Examples
@@ -57,19 +57,18 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawi
     >>> from percept_obs import PerspectiveSystem, affine, figures, ibo, pinhole, record, scenarios
     >>> from percept_obs.studies.comparison import compare
     >>> observer = ibo(PerspectiveSystem(affine(), pinhole()))
-    >>> table = compare([record(scenarios.ma2005_eq35(), 5)], [observer])
-    >>> print(figures.comparison(table).text.split(". ")[0])
+    >>> print(figures.comparison(compare([record(scenarios.ma2005_eq35(), 5)], [observer])).text.split(". ")[0])
     Settling time and rms error of every observer, on logarithmic axes
     """
-    if not len(table) or not {"observer", *PANELS} <= set(table.columns):
-        raise ValueError("the table has no runs; compare(recordings, observers) makes one that has")
-    found = summary(table)
-    pair = canvases(axes, ["settling time", "error"], 1.3 + 0.42 * len(found), ncols=2, sharey=True)
+    if not len(found.table) or not {*PANELS} <= set(found.table.columns):
+        raise ValueError("the comparison has no such runs; compare(recordings, observers) makes one that has")
+    summary = found.summary
+    pair = canvases(axes, ["settling time", "error"], 1.3 + 0.42 * len(summary), ncols=2, sharey=True)
     for ax, (column, title) in zip(pair, PANELS.items(), strict=True):
-        _draw_runs(ax, table, found, column)
+        _draw_runs(ax, found.table, summary, column)
         ax.set_xlabel(title)
-        ax.set_yticks(range(len(found)), [f"{label}\n{_counts(row)}" for label, row in found.iterrows()])
-        ax.set_ylim(len(found) - 0.5, -0.5)
+        ax.set_yticks(range(len(summary)), [f"{label}\n{_counts(row)}" for label, row in summary.iterrows()])
+        ax.set_ylim(len(summary) - 0.5, -0.5)
     picture = base.root_figure(pair[0])
     picture.legend(
         handles=[Line2D([], [], label=name, **looks) for name, looks in _KEY.items()],
@@ -78,7 +77,7 @@ def comparison(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawi
         frameon=False,
     )
     yield "Settling time and rms error of every observer, on logarithmic axes."
-    for label, row in found.iterrows():
+    for label, row in summary.iterrows():
         yield f"{label}: {_counts(row)}; {_medians(row)}."
     return pair
 
@@ -118,8 +117,8 @@ def _medians(row: pd.Series) -> str:
     return "; ".join(sentences)
 
 
-@figure("the table is empty or not from `efficiencies`, or the axes are too few")
-def efficiencies(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Drawing:
+@figure("a comparison has no such columns, or the axes are too few")
+def efficiencies(cases: Mapping[str, Comparison], axes: Sequence[Axes] | None = None) -> Drawing:
     """Error over the Cramer-Rao bound against the settling time of every observer, one panel a case.
 
     Fast ones stand on the left, efficient ones below; nobody stands below the line but by chance.  Observers of which
@@ -127,44 +126,47 @@ def efficiencies(table: pd.DataFrame, axes: Sequence[Axes] | None = None) -> Dra
 
     Parameters
     ----------
-    table : pandas.DataFrame
-        From `percept_obs.studies.efficiencies.efficiencies`.
+    cases : mapping of labels to Comparison
+        With the columns settling_time and over_bound.
 
     Examples
     --------
     >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, ekf, figures, pinhole, record, scenarios
-    >>> from percept_obs.studies.efficiencies import Case, efficiencies
-    >>> seen = [record(scenarios.ma2005_eq35(), 8, Camera(0.05, Gaussian(0.01)), seed) for seed in range(4)]
-    >>> case = Case(PerspectiveSystem(affine(), pinhole()).measure("y1"), seen[:2], seen[2:])
-    >>> figures.efficiencies(efficiencies({"one output": case}, {ekf: [{}]})).text.split(". ")[0]
+    >>> from percept_obs.studies.comparison import compare, over_bound
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1")
+    >>> seen = [record(scenarios.ma2005_eq35(), 8, Camera(0.05, Gaussian(0.01)), seed) for seed in range(2)]
+    >>> found = compare(seen, [ekf(form)], columns={"over_bound": over_bound(form)})
+    >>> figures.efficiencies({"one output": found}).text.split(". ")[0]
     'Error over the Cramer-Rao bound against the settling time, on logarithmic axes'
     """
-    if not len(table) or not {"case", "ratio", "settling_time"} <= set(table.columns):
-        raise ValueError("the table has no rows; efficiencies(cases) makes one that has")
-    cases, observers = ([*table[name].unique()] for name in ("case", "observer"))
+    if not cases or not all({"settling_time", "over_bound"} <= set(each.table) for each in cases.values()):
+        raise ValueError('give comparisons with "settling_time" and "over_bound"; compare(..., columns=...) makes them')
     columns = min(3, len(cases))
     lines = -(-len(cases) // columns)
     parts = [*cases, *["nothing"] * (lines * columns - len(cases))]
     panels = canvases(axes, parts, 2.6 * lines + 1.2, ncols=columns, nrows=lines, sharex=True, sharey=True)
+    summaries = {case: each.summary for case, each in cases.items()}
+    observers = dict.fromkeys(name for each in summaries.values() for name in each.index)
     looks = {
         name: {**look.style(k), "linestyle": "", "markersize": 9 - 4 * (k % 2)} for k, name in enumerate(observers)
     }
     for ax in panels[len(cases) :]:
         ax.set_axis_off()
     yield "Error over the Cramer-Rao bound against the settling time, on logarithmic axes."
-    for ax, case in zip(panels, cases, strict=False):
-        rows = table[table["case"] == case]
+    for ax, (case, rows) in zip(panels, summaries.items(), strict=False):
         ax.set(title=case, xscale="log", yscale="log", xlabel="settling time (s)", ylabel="error / bound")
         ax.label_outer()
         ax.tick_params(labelbottom=ax in panels[max(len(cases) - columns, 0) : len(cases)])
         ax.xaxis.set_minor_formatter(NullFormatter())
         ax.axhline(1, **look.BOUND)
-        there = rows[np.isfinite(rows["settling_time"]) & np.isfinite(rows["ratio"])]
+        there = rows[np.isfinite(rows["settling_time"]) & np.isfinite(rows["over_bound"])]
         for row in there.itertuples():
-            ax.plot([row.settling_time], [row.ratio], **looks[row.observer])
-        said = [f"{row.observer} {row.ratio:.3g} after {row.settling_time:.2g} s" for row in there.itertuples()]
-        rest = [name for name in rows["observer"] if name not in set(there["observer"])]
-        yield f"{case}: {', '.join(said) or 'nobody settles'}" + (f"; not settled: {', '.join(rest)}." if rest else ".")
+            ax.plot([row.settling_time], [row.over_bound], **looks[row.Index])
+        said = [f"{row.Index} {row.over_bound:.3g} after {row.settling_time:.2g} s" for row in there.itertuples()]
+        rest = rows.index.difference(there.index, sort=False)
+        yield f"{case}: {', '.join(said) or 'nobody settles'}" + (
+            f"; not settled: {', '.join(rest)}." if len(rest) else "."
+        )
     handles = [Line2D([], [], label=name, **each) for name, each in looks.items()]
     base.root_figure(panels[0]).legend(handles=handles, loc="outside upper center", ncols=3, frameon=False)
     return panels

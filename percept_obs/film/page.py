@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 
 from percept_obs.film.film import Film
-from percept_obs.studies.all_observers import AllObservers
+from percept_obs.studies.comparison import Comparison
 
 STYLE = (
     "body{font:16px/1.5 system-ui,sans-serif;max-width:62rem;margin:2rem auto;padding:0 1rem;color-scheme:light dark}"
@@ -14,7 +14,7 @@ STYLE = (
 )
 
 
-def page(film: Film, table: AllObservers | None, video: str, lab: str) -> str:
+def page(film: Film, table: Comparison | None, video: str, lab: str) -> str:
     """Return a page of HTML about a film, with links to the film with distances drawn in and to the live lab."""
     points = film.distances()
     trusted = points[points["trusted"]]

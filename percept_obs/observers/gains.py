@@ -95,7 +95,7 @@ def grid(**values: Sequence[float]) -> tuple[dict[str, float], ...]:
 
     See Also
     --------
-    percept_obs.studies.tuning.choose_and_report : Tries them.
+    percept_obs.studies.all_observers.all_observers : Tries them.
 
     Examples
     --------

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Limits:
+class _Limits:
     """What poses must be, and how near to each other."""
 
     unit: float = 0.01  # largest difference of a quaternion's length, or of R^T R, from 1: files are rounded
@@ -31,7 +31,7 @@ class Limits:
     repeated: float = 0.25  # share of poses that are the one before them again, beyond which somebody has repeated them
 
 
-LIMITS = Limits()
+LIMITS = _Limits()
 
 
 @checked

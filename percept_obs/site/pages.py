@@ -23,8 +23,8 @@ FOLDERS = {
     "structure": "competitors pixels scenarios",
     "observability": "",
     "tracking": "",
-    "studies": "all_observers chatter comparison consistency diagnosis efficiencies fields least_squares likelihood "
-    "sensitivity servoing tuning",
+    "studies": "all_observers chatter comparison consistency diagnosis fields least_squares sensitivity "
+    "servoing tuning",
     "system": "bearings derivation inertial state_view",
     "recording": "camera_files colmap imu poses pose_files scenarios state_scenario stereo_mat track_files utias "
     "worked",

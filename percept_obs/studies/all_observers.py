@@ -2,34 +2,37 @@
 
 from __future__ import annotations
 
-import html
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import product
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from percept_obs.compile import choose
+from percept_obs.observability.windows import information_along
 from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
 from percept_obs.recording.footage import Footage
-from percept_obs.studies.comparison import Follow
+from percept_obs.studies.comparison import Columns, Comparison, Estimate, Follow, error_at, rows_of
 from percept_obs.studies.least_squares import moving_window_least_squares
-from percept_obs.studies.likelihood import MOST, STARTS, tune_by_likelihood
-from percept_obs.studies.tuning import Estimate, Gains, choose_and_report, evenly, own_length, side_by_side
+from percept_obs.studies.tuning import MOST, STARTS, best_setting, tune_by_likelihood
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.signal import slack_of
-from percept_obs.tracking.following import track
+from percept_obs.system.signal import from_the_start, slack_of
+from percept_obs.system.surfaces import ImagingSurface
+from percept_obs.tracking.following import DoesNotFit, require_match, track
 from percept_obs.tracking.function import FunctionObserver
 from percept_obs.tracking.run import Run
-from percept_obs.validation import bar, checked
+from percept_obs.validation import bar, checked, load_pandas
 
-if TYPE_CHECKING:
-    import pandas as pd
+__all__ = ["all_observers"]
 
+Gains = Mapping[str, float]
+Candidates = Mapping[Family | FunctionObserver, Sequence[Gains]]
 Split = Literal["alternating", "earlier and later"]
 
 LEAST_SQUARES = "least squares on 2 s"
@@ -44,66 +47,8 @@ MOST_JUDGED = 20
 SMALLEST = 1e-5
 """A gain that may be 0 is searched from this share of its largest value on, for the search is over its logarithm."""
 
-
-@dataclass(frozen=True, eq=False, repr=False)
-class AllObservers:
-    """Errors of every observer on a set of recordings; a notebook shows them as a table.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        One row for an observer, a reference and a time, as of `choose_and_report`.
-    choosing, reporting : sequences of Recording
-        Those on which gains were chosen, and those on which errors are reported.
-    left_out : mapping of names to reasons
-        Recordings and times that could not be used; the table says why an observer could not be run.
-    start : mapping of coordinate names to values
-        Estimates at the first sample, for every observer.
-    notes : tuple of str
-        Sentences on what was sampled, and on what stands for a truth where there is none.
-
-    See Also
-    --------
-    all_observers : Makes it.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, Uniform, record, scenarios
-    >>> from percept_obs.observers import de_luca
-    >>> seen = [record(scenarios.ma2005_eq35(), seconds, Camera(0.05, Uniform(0.01))) for seconds in (3, 3, 0.5)]
-    >>> print(*all_observers(seen, candidates={de_luca: [{}]}).left_out.values())
-    it lasts 0.5 s, and the first error is asked for after 1 s
-    """
-
-    table: pd.DataFrame
-    choosing: Sequence[Recording]
-    reporting: Sequence[Recording]
-    left_out: Mapping[str, str]
-    start: Mapping[str, float]
-    notes: tuple[str, ...] = ()
-
-    @property
-    def side_by_side(self) -> pd.DataFrame:
-        """The table as text, one row an observer; see `percept_obs.studies.tuning.side_by_side`."""
-        return side_by_side(self.table)
-
-    def _sentences(self) -> Iterator[str]:
-        begin = ", ".join(f"{name} = {value:.3g}" for name, value in self.start.items())
-        what = "differences" if self.table["trusted"].notna().any() else "errors"
-        yield (
-            f"Relative {what} of the distance, the median and in brackets the 90 % quantile: gains chosen on "
-            f"{len(self.choosing)} recordings, {what} on {len(self.reporting)} others. Every observer starts at "
-            f"{begin or 'its own start'}"
-        )
-        yield from self.notes
-        yield from (f"Left out: {name}, for {reason}" for name, reason in self.left_out.items())
-
-    def __repr__(self) -> str:
-        return "\n".join([self.side_by_side.to_string(), *self._sentences()])
-
-    def _repr_html_(self) -> str:
-        lines = "".join(f"<p>{html.escape(line)}</p>" for line in self._sentences())
-        return f"{self.side_by_side.to_html()}{lines}"
+USUAL_SPEED = 0.2
+"""Root mean square of |w|, in lengths a second, that the candidates' gains are made for."""
 
 
 @checked
@@ -113,11 +58,15 @@ def all_observers(
     start: Mapping[str, float] | None = None,
     after: Sequence[float] = (1.0, 2.0, 3.0),
     references: Sequence[str] | None = None,
-    candidates: Mapping[Family | FunctionObserver, Sequence[Gains]] | None = None,
+    candidates: Candidates | None = None,
     max_tracks: int | None = None,
+    choosing: Sequence[Recording] = (),
+    form: PartitionedSystem | None = None,
+    length: float | None = None,
+    columns: Columns | None = None,
     **settings: Any,
-) -> AllObservers:
-    """Run every observer on a set of recordings of single points, and say what could not be run and why.
+) -> Comparison:
+    """Choose every observer's gains on some recordings of single points, and report its errors on others.
 
     Parameters
     ----------
@@ -134,40 +83,58 @@ def all_observers(
         "truth", or names of measured distances, of which a recording has one; gains are chosen by the first of them.
         Those of a film, or the truth, when left out.
     candidates : mapping of families to their gains, optional
-        The candidates in every observer's own file when left out.
+        Those with the least sum of median errors are chosen; the candidates in every observer's own file when left out.
     max_tracks : int, optional
         Most recordings to use, evenly sampled.
+    choosing : sequence of Recording, optional
+        Recordings to choose on, which the `split` takes of the others when left out.
+    form : PartitionedSystem, optional
+        What the observers observe, with fewer outputs, say; all that was recorded when left out.
+    length : float, optional
+        The recordings' unit of length for all observers, see `Recording`; one by which their gains fit when left out.
+    columns : mapping of names to functions of a run, optional
+        Further numbers, see `compare`.
     **settings
         Passed to `track`, such as ``hold`` and ``step``.
 
     Returns
     -------
-    AllObservers
+    Comparison
+        Its table has gains (those chosen, by the length), at_edge (names of gains at the smallest or largest of their
+        candidates, beyond which better ones may lie) and, for every reference and time, relative errors of the
+        distance, such as "truth 2 s": infinite without an estimate in front of the camera, NaN for recordings that end
+        earlier.  Least squares on 2 s, which have no gains, stand beside the observers of all outputs.
 
     Raises
     ------
     ValueError
-        If fewer than two recordings can be used, or none of the times.
+        If fewer than two recordings can be used, or none of the times, or a recording is in both halves.
+    DoesNotFit
+        If the first recording has another view, other outputs or another motion than the form.
 
     See Also
     --------
-    percept_obs.studies.tuning.choose_and_report : takes both halves as they are given
+    percept_obs.studies.comparison.compare : Observers with gains as they are.
+    percept_obs.studies.tuning.best_setting : Chooses the gains of one.
 
     Notes
     -----
     Where no recording has a truth, the extended Kalman filter is tuned by its likelihood, and its distance stands for
     the true one: other observers have the gains with which they agree best with it, and the table has differences from
-    it.  It also has what observers claim, and the share of runs, of 20 at most, that `Run.trust` trusts.
+    it.  It also has the relative standard deviations that observers claim, such as "claimed 2 s", and for 20 runs at
+    most whether `Run.trust` trusts them.
 
     Examples
     --------
     >>> from percept_obs import Camera, Uniform, record, scenarios
     >>> from percept_obs.observers import de_luca, spica
     >>> camera = Camera(period=0.05, noise=Uniform(0.01))
-    >>> seen = [record(scenarios.ma2005_eq35(), 3, camera, seed) for seed in range(4)]
+    >>> seen = [record(scenarios.ma2005_eq35(), seconds, camera, k) for k, seconds in enumerate((3, 3, 3, 3, 0.5))]
     >>> found = all_observers(seen, candidates={make: make.candidates[:1] for make in (de_luca, spica)})
-    >>> sorted(set(found.table["observer"]))
+    >>> found.summary.index.tolist()
     ['De Luca', 'Spica', 'least squares on 2 s']
+    >>> print(*found.left_out.values())
+    it lasts 0.5 s, and the first error is asked for after 1 s
     """
     if references is None:
         references = recordings.references if isinstance(recordings, Footage) else ("truth",)
@@ -181,43 +148,52 @@ def all_observers(
         raise ValueError(f"the split {split!r} is none of {' and '.join(map(repr, get_args(Split)))}")
     if max_tracks is not None and max_tracks < 2:
         raise ValueError(f"max_tracks is {max_tracks}; two are needed, one to choose gains on and one to report on")
-    first = recordings[0]
-    system = PerspectiveSystem(first.motion, first.imaging_surface)
-    form = system.partition(*first.names)
-    blind = tuple(references) == ("truth",) and all(each.truth is None for each in recordings)
-    reasons = [_why_not(each, form, first, () if blind else references, min(after)) for each in recordings]
+    if {id(each) for each in choosing} & {id(each) for each in recordings}:
+        raise ValueError("a recording is in both halves: its errors would be too small if gains were chosen on it")
+    tried = dict[Family | FunctionObserver, Sequence[Gains]]({make: make.candidates for make in OBSERVERS})
+    tried = tried if candidates is None else dict(candidates)
+    if not tried or not all(map(len, tried.values())):
+        raise ValueError("every observer needs at least one candidate for its gains")
+    given = [*choosing, *recordings]
+    first = given[0]
+    if form is None:
+        form = PerspectiveSystem(first.motion, first.imaging_surface).partition(*first.names)
+    require_match(form, first, first.motion)
+    blind = tuple(references) == ("truth",) and all(each.truth is None for each in given)
+    reasons = [_why_not(each, form, first, () if blind else references, min(after)) for each in given]
     left_out = {
         f"recording {number} ({each.source})": reason
-        for number, (each, reason) in enumerate(zip(recordings, reasons, strict=True), 1)
+        for number, (each, reason) in enumerate(zip(given, reasons, strict=True), 1)
         if reason
     }
-    usable = [each for each, reason in zip(recordings, reasons, strict=True) if not reason]
-    if len(usable) < 2:
+    count = len(choosing)
+    halves = (choosing, reasons[:count]), (recordings, reasons[count:])
+    choosing, reporting = ([each for each, why in zip(*half, strict=True) if not why] for half in halves)
+    usable = len(choosing) + len(reporting)
+    if usable < 2 or not reporting or (count and not choosing):
         unusable = "; ".join(f"{name}: {reason}" for name, reason in left_out.items())
         raise ValueError(
-            f"{len(usable)} of {len(recordings)} recordings can be used, and two are needed, one to choose gains on "
+            f"{usable} of {len(given)} recordings can be used, and two are needed, one to choose gains on "
             f"and one to report on; cut one in two with between(){'; left out: ' + unusable if unusable else ''}"
         )
     notes = []
-    if max_tracks is not None and len(usable) > max_tracks:
-        notes.append(f"{max_tracks} of {len(usable)} recordings were taken, evenly sampled")
-        usable = evenly(usable, max_tracks)
-    if split == "alternating":
-        apart = max(2, math.ceil(len(usable) / MOST_CHOOSING))
-        choosing = usable[::apart]
-        reporting = [each for k, each in enumerate(usable) if k % apart]
-    else:
-        usable.sort(key=lambda recording: float(recording.time[0]))
-        choosing, reporting = evenly(usable[: len(usable) // 2], MOST_CHOOSING), usable[len(usable) // 2 :]
-    if len(choosing) < len(usable) // 2:
-        notes.append(f"{len(choosing)} recordings, evenly sampled, are enough to choose gains on")
+    if max_tracks is not None and len(reporting) > max_tracks:
+        notes.append(f"{max_tracks} of {len(reporting)} recordings were taken, evenly sampled")
+        reporting = evenly(reporting, max_tracks)
+    if not count:
+        half = len(reporting) // 2
+        choosing, reporting = _halves(reporting, split)
+        if len(choosing) < half:
+            notes.append(f"{len(choosing)} recordings, evenly sampled, are enough to choose gains on")
     shorter = min(max(float(each.elapsed[-1]) + slack_of(each.time) for each in half) for half in (choosing, reporting))
     left_out |= {
         f"errors after {seconds:g} s": f"no recording in one of the halves lasts longer than {shorter:.3g} s"
         for seconds in after
         if seconds > shorter
     }
-    whole = first.names == tuple(symbol.name for symbol in first.imaging_surface.image_coordinates)
+    lasting = [seconds for seconds in after if seconds <= shorter]
+    image = first.view.image_coordinates if isinstance(first.view, ImagingSurface) else ()
+    whole = form.measured == first.names == tuple(symbol.name for symbol in image)
     batch = {LEAST_SQUARES: moving_window_least_squares} if whole else {}
     if start is None:
         known = [run.distance for run in map(moving_window_least_squares, choosing)] if blind and whole else []
@@ -226,8 +202,6 @@ def all_observers(
         distances = distances[np.isfinite(distances)]
         inverse = first.imaging_surface.inverse_distance.name
         start = {inverse: 1 / (2 * float(np.median(distances)))} if len(distances) else {}
-    tried: dict[Family | FunctionObserver, Sequence[Gains]] = {make: make.candidates for make in OBSERVERS}
-    tried = tried if candidates is None else dict(candidates)
     samples, others = (sum(len(each.time) for each in half) for half in (choosing, reporting))
     most = max([*map(len, tried.values()), len(STARTS) * MOST * blind])
     settings = {"language": choose(None, samples * most + others)} | settings
@@ -235,11 +209,11 @@ def all_observers(
     def follow(recording: Recording, observer: Observer) -> Run:
         return track(recording, observer, start, **settings)
 
-    lasting = [seconds for seconds in after if seconds <= shorter]
-    length = own_length(form, choosing)
+    length = own_length(form, choosing) if length is None else length
     if blind:
-        units = [replace(each, unit=length) for each in choosing]
-        label, estimate, sentence = _judge(units, form, follow, tried, batch)
+        label, estimate, sentence = _judge(
+            [replace(each, unit=length) for each in choosing], form, follow, tried, batch
+        )
         count = len(choosing) + len(reporting)
         choosing, reporting = (_with_distance(half, label, estimate, length) for half in (choosing, reporting))
         notes.append(sentence)
@@ -248,11 +222,55 @@ def all_observers(
         if first.distances:
             notes.append(f"To compare with what was measured, name references, such as {', '.join(first.distances)}")
         references = (label,)
-    judged = MOST_JUDGED if blind else 0
-    table = choose_and_report(choosing, reporting, form, follow, tried, batch, lasting, references, length, judged)
+    ours, theirs = ([replace(each, unit=length) for each in half] for half in (choosing, reporting))
+    asked: dict[str, Callable[[Run], float]] = {
+        f"{reference} {seconds:g} s": partial(error_at, after=seconds, reference=reference)
+        for reference, seconds in product(references, lasting)
+    }
+    errors = [*asked]
     if blind:
-        table.loc[table["observer"] == references[0], ["median", "nine_in_ten"]] = np.nan
-    return AllObservers(table, choosing, reporting, left_out, start, tuple(notes))
+        judged = {id(each) for each in evenly(theirs, MOST_JUDGED)}
+        asked |= {f"claimed {seconds:g} s": partial(_claim, seconds=seconds) for seconds in lasting}
+        asked["trusted"] = lambda run: float(run.trust().trusted) if id(run.recording) in judged else math.nan
+    asked |= columns or {}
+
+    def measures(run: Run) -> dict[str, float]:
+        return {name: of(run) for name, of in asked.items()}
+
+    rows: list[dict[str, Any]] = []
+    for make, gains in bar(tried.items(), "choosing gains", unit="observer"):
+        refusal = make.refusal(form)
+        try:
+            settled = [] if refusal else [make(form, **each) for each in gains]
+            chosen = best_setting(ours, settled, follow, lasting, references[0]) if settled else None
+        except DoesNotFit as error:
+            refusal, chosen = str(error), None
+        if chosen is None:
+            rows.append({"observer": make.name, "refusal": refusal})
+            continue
+        values = {gain.name: gain.value for gain in chosen.gains if gain.name in gains[0]}
+        about = {
+            "gains": ", ".join(f"{name} {value:.3g}" for name, value in values.items()),
+            "at_edge": ", ".join(_at_edge(values, settled)),
+        }
+        rows += rows_of(chosen.name, partial(follow, observer=chosen), theirs, measures, about)
+    for label, estimate in batch.items():
+        rows += rows_of(label, estimate, theirs, measures)
+    names = ["observer", "gains", "at_edge", "recording", *asked, "resets", "diverged_at", "cost", "refusal", "warning"]
+    table = load_pandas().DataFrame(rows, columns=names)
+    table = table.fillna(dict.fromkeys(("gains", "at_edge", "recording", "refusal", "warning"), ""))
+    if blind:
+        table.loc[table["observer"] == references[0], errors] = np.nan
+    return Comparison(table, choosing, reporting, left_out, start, tuple(notes))
+
+
+def _halves(recordings: list[Recording], split: Split) -> tuple[list[Recording], list[Recording]]:
+    """Recordings to choose gains on, and those to report on."""
+    if split == "alternating":
+        apart = max(2, math.ceil(len(recordings) / MOST_CHOOSING))
+        return recordings[::apart], [each for k, each in enumerate(recordings) if k % apart]
+    earlier, half = sorted(recordings, key=lambda recording: float(recording.time[0])), len(recordings) // 2
+    return evenly(earlier[:half], MOST_CHOOSING), earlier[half:]
 
 
 def _with_distance(recordings: Sequence[Recording], label: str, estimate: Estimate, length: float) -> list[Recording]:
@@ -322,3 +340,39 @@ def _why_not(
     if recording.elapsed[-1] < shortest - slack_of(recording.time):
         return f"it lasts {recording.elapsed[-1]:.3g} s, and the first error is asked for after {shortest:g} s"
     return ""
+
+
+def _claim(run: Run, seconds: float) -> float:
+    """Relative standard deviation of the distance that an observer claims some seconds after the first sample."""
+    late = np.flatnonzero(from_the_start(run.elapsed, seconds))
+    if run.observer.covariance is None or not len(late) or not run.estimate[late[0], -1]:
+        return math.nan
+    return math.sqrt(max(float(run.covariance[late[0], -1, -1]), 0.0)) / abs(float(run.estimate[late[0], -1]))
+
+
+def evenly(things: Sequence[Any], most: int) -> list[Any]:
+    """Return at most so many of some things, evenly sampled."""
+    few = np.linspace(0, len(things) - 1, min(most, len(things))).round().astype(int)
+    return [things[k] for k in few]
+
+
+def own_length(form: PartitionedSystem, recordings: Sequence[Recording]) -> float:
+    """Length in which the part of |w| with one has the root mean square `USUAL_SPEED`; |b| without a form.
+
+    The error of a hidden coordinate shrinks at a rate that grows with |w|, which depends on how fast the camera moves
+    past a point and not on how far away the point is.
+    """
+    if form.culprits:
+        squares = [np.array([recording.motion.speed(recording.time) ** 2]) for recording in recordings]
+    else:
+        lengths = dict(zip(form.coordinates, recordings[0].view.lengths, strict=False))
+        found = [(each, np.diagonal(information_along(form, each), axis1=1, axis2=2)) for each in recordings]
+        squares = [each.unit**2 * w[:, [lengths[x] != 0 for x in form.x2]].sum(axis=1) for each, w in found]
+    speed = float(np.sqrt(np.mean(np.concatenate(squares))))
+    return speed / USUAL_SPEED or 1.0
+
+
+def _at_edge(chosen: Gains, observers: Sequence[Observer]) -> list[str]:
+    """Names of chosen gains that are the smallest or the largest of several that were tried."""
+    tried = {name: [g.value for o in observers for g in o.gains if g.name == name] for name in chosen}
+    return [n for n, value in chosen.items() if value in (min(tried[n]), max(tried[n])) and len(set(tried[n])) > 1]

@@ -1,27 +1,31 @@
-"""Comparison of observers on the same recordings: a table of runs, its summary, distance errors, the best setting."""
+"""Observers on the same recordings: one table with a row for each run, what it sums up to, and its words."""
 
 from __future__ import annotations
 
+import html
 import math
+import re
 import time
 import warnings
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
-from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from percept_obs.compile import Array, choose
+from percept_obs.observability import cramer_rao
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
+from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.signal import from_the_start, slack_of
 from percept_obs.tracking.following import AnyObserver, StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
 from percept_obs.validation import bar, checked, load_pandas
 
-__all__ = ["best_setting", "compare", "relative_distance_errors", "summary"]
+__all__ = ["Comparison", "compare", "over_bound", "relative_distance_errors"]
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,8 +33,189 @@ if TYPE_CHECKING:
 Follow = Callable[[Recording, Observer], Run]
 """Function that runs an observer on a recording, such as ``lambda r, o: track(r, o, start)``."""
 
-MEASURES = ("settling_time", "final", "rms", "worst", "cost")
-"""Columns of `compare` of which `summary` has the median and quantiles."""
+Estimate = Callable[[Recording], Run]
+
+Columns = Mapping[str, Callable[[Run], float]]
+"""Further numbers of a run, by the names of their columns, such as ``{"nis": lambda run: np.nanmean(run.nis)}``."""
+
+ABOUT = ("observer", "gains", "at_edge", "recording", "resets", "diverged_at", "refusal", "warning")
+"""Columns that are no measures."""
+
+AT_A_TIME = re.compile(r"(.+) (\S+) s")
+"""Names of columns that have relative errors, or claims of them, some seconds after the first sample."""
+
+ENDS = {"": 0.5, "_low": 0.16, "_high": 0.84}
+"""Quantiles of a measure, by what stands behind its name."""
+
+MOST = 0.9
+"""Quantile of errors at a time that stands next to their median."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison:
+    """Runs of observers on recordings; a notebook shows one line an observer.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        One row for a run: observer, recording, resets, diverged_at (s since the first sample, infinite if it does not),
+        cost (seconds of computing for a second of data), warning (that the steps were too long, if they were), and
+        what was asked for: of `compare`, of `percept_obs.studies.all_observers.all_observers`, or further columns.  An
+        observer that cannot follow has one row with the reason as refusal, which is empty for the others.
+    choosing, reporting : sequences of Recording
+        Those on which gains were chosen, if they were, and those of the runs.
+    left_out : mapping of names to reasons
+        Recordings and times that could not be used.
+    start : mapping of coordinate names to values
+        Estimates at the first sample, for every observer.
+    notes : tuple of str
+        Sentences on what was sampled, and on what stands for a truth where there is none.
+
+    See Also
+    --------
+    compare, percept_obs.studies.all_observers.all_observers : Make it.
+    percept_obs.figures.comparison : Draws it.
+
+    Examples
+    --------
+    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+    >>> found = compare([record(make(), 5) for make in (scenarios.ma2005_eq35, scenarios.planar)], [ibo(form)])
+    >>> found.summary[["runs", "failed", "diverged"]].values.tolist()
+    [[2, 0, 0]]
+    """
+
+    table: pd.DataFrame
+    choosing: Sequence[Recording] = ()
+    reporting: Sequence[Recording] = ()
+    left_out: Mapping[str, str] = field(default_factory=dict)
+    start: Mapping[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    @property
+    def summary(self) -> pd.DataFrame:
+        """One row an observer, over its runs.
+
+        runs, reset and diverged are numbers of runs; failed those that have not settled, and behind those without an
+        estimate in front of the camera at the time with the most.  Errors at a time have the median, and the 90 %
+        quantile as NAME_most; other measures the median with the 16 % and 84 % quantiles as NAME_low and NAME_high.
+        trusted is a share; over_bound the root mean square over the runs that settle, if two do, and over_bound_scatter
+        its standard deviation over sets of as many runs.
+        """
+        found = {label: _summed(rows) for label, rows in self.table.groupby("observer", sort=False)}
+        return load_pandas().DataFrame.from_dict(found, orient="index")
+
+    @property
+    def side_by_side(self) -> pd.DataFrame:
+        """The summary as text, with a remark.
+
+        usable after is the first time from which on the 90 % quantile of the first reference is within 10 %.  The
+        remark has the gains, those at an edge of their candidates, steps that are too long, or why the observer cannot
+        follow.
+        """
+        groups = self.table.groupby("observer", sort=False)
+        rows = zip(self.summary.iterrows(), groups, strict=True)
+        lines = {label: _line(row, of_one.iloc[0], of_one["warning"]) for (label, row), (_, of_one) in rows}
+        return load_pandas().DataFrame.from_dict(lines, orient="index")
+
+    def _sentences(self) -> Iterator[str]:
+        if self.choosing:
+            begin = ", ".join(f"{name} = {value:.3g}" for name, value in self.start.items())
+            what = "differences" if "trusted" in self.table else "errors"
+            yield (
+                f"Relative {what} of the distance, the median and in brackets the 90 % quantile: gains chosen on "
+                f"{len(self.choosing)} recordings, {what} on {len(self.reporting)} others. Every observer starts at "
+                f"{begin or 'its own start'}"
+            )
+        yield from self.notes
+        yield from (f"Left out: {name}, for {reason}" for name, reason in self.left_out.items())
+
+    def __repr__(self) -> str:
+        return "\n".join([self.side_by_side.to_string(), *self._sentences()])
+
+    def _repr_html_(self) -> str:
+        lines = "".join(f"<p>{html.escape(line)}</p>" for line in self._sentences())
+        return f"{self.side_by_side.to_html()}{lines}"
+
+
+def _summed(rows: pd.DataFrame) -> dict[str, float]:
+    """Row of the summary for one observer."""
+    followed = rows[rows["refusal"] == ""]
+    measures = {name: followed[name].dropna().to_numpy(dtype=float) for name in rows if name not in {*ABOUT, "outcome"}}
+    found: dict[str, float] = {"runs": len(followed)}
+    if "settling_time" in measures:
+        found["failed"] = int(np.isinf(measures["settling_time"]).sum())
+    if errors := [values for name, values in measures.items() if _is_error(name)]:
+        found["behind"] = max(int(np.isinf(values).sum()) for values in errors)
+    found["reset"] = int((followed["resets"] > 0).sum())
+    found["diverged"] = int(np.isfinite(followed["diverged_at"].astype(float)).sum())
+    for name, values in measures.items():
+        if name == "trusted":
+            found[name] = float(values.mean()) if len(values) else math.nan
+        elif name == "over_bound":
+            found |= dict(zip((name, f"{name}_scatter"), _root_mean_square(values), strict=True))
+        elif AT_A_TIME.fullmatch(name):
+            found[name] = float(np.median(values)) if len(values) else math.nan
+            found[f"{name}_most"] = _by_rank(values, MOST)
+        else:
+            found |= {name + end: _by_rank(values, share) for end, share in ENDS.items()}
+    return found
+
+
+def _by_rank(values: Array, share: float) -> float:
+    """Quantile by rank, for infinite values have no mean."""
+    return float(np.quantile(values, share, method="nearest")) if len(values) else math.nan
+
+
+def _root_mean_square(values: Array) -> tuple[float, float]:
+    """Root mean square of the finite values, two or more, and its scatter by leaving out one after the other."""
+    squares = values[np.isfinite(values)] ** 2
+    count = len(squares)
+    if count < 2:
+        return (math.inf if len(values) else math.nan), math.nan
+    without = np.sqrt((squares.sum() - squares) / (count - 1))
+    return math.sqrt(squares.mean()), math.sqrt((count - 1) * np.mean((without - without.mean()) ** 2))
+
+
+def _is_error(name: str) -> bool:
+    """True for the name of errors at a time."""
+    return bool(AT_A_TIME.fullmatch(name)) and not name.startswith("claimed ")
+
+
+def _line(row: pd.Series, first: pd.Series, warned: pd.Series) -> dict[str, str]:
+    """Row of `Comparison.side_by_side` for one observer, from its row of the summary and its first run."""
+    measures = [name for name in first.index if name not in {*ABOUT, "outcome", "trusted", "cost"}]
+    errors, claims = [n for n in measures if _is_error(n)], [n for n in measures if n.startswith("claimed ")]
+    said = {
+        name: "–" if np.isnan(row[name]) else f"{row[name]:.1%} ({row[f'{name}_most']:.0%})".replace("inf%", "none")
+        for name in errors
+    }
+    if errors and not claims:
+        said["usable after"] = _usable(row, errors)
+    said |= {name: f"{row[name]:.0f}" for name in ("failed", "behind", "reset", "diverged") if name in row}
+    for name in measures:
+        if name in claims:
+            said[name] = "–" if np.isnan(row[name]) else f"{row[name]:.1%}"
+        elif name == "over_bound":
+            said[name] = f"{row[name]:.3g} +- {row[f'{name}_scatter']:.2g}"
+        elif name not in errors:
+            said[name] = f"{row[name]:.2g} ({row[f'{name}_low']:.2g} to {row[f'{name}_high']:.2g})"
+    if "trusted" in row:
+        said["trusted at the end"] = "–" if np.isnan(row["trusted"]) else f"{row['trusted']:.1%}"
+    said["cost"] = f"{1e6 * row['cost']:.0f} us/s"
+    if first["refusal"]:
+        return dict.fromkeys(said, "–") | {"remark": f"cannot: {first['refusal']}"}
+    edge = first.get("at_edge", "") and f"; at the edge of what was tried: {first['at_edge']}"
+    return said | {"remark": "; ".join(filter(None, [first.get("gains", "") + edge, *warned[warned != ""][:1]]))}
+
+
+def _usable(row: pd.Series, errors: Sequence[str]) -> str:
+    """Time from which on the errors of the first reference are small; what grows again does not count before."""
+    reference = errors[0].rsplit(" ", 2)[0]
+    mine = sorted((float(name.split()[-2]), row[f"{name}_most"]) for name in errors if name.startswith(f"{reference} "))
+    late = [k for k, (_, error) in enumerate(mine) if not error <= TOLERANCE]
+    begin = late[-1] + 1 if late else 0
+    return f"{mine[begin][0]:g} s" if begin < len(mine) else f"not within {mine[-1][0]:g} s"
 
 
 @checked
@@ -41,8 +226,9 @@ def compare(
     tolerance: float = TOLERANCE,
     after: float = 0.0,
     coordinates: Sequence[str] = (),
+    columns: Columns | None = None,
     **settings: Any,
-) -> pd.DataFrame:
+) -> Comparison:
     """Run every observer on every recording, so that all see the same noise.
 
     Parameters
@@ -58,16 +244,16 @@ def compare(
         Seconds since the first sample from which on errors count for their root mean square and their largest value.
     coordinates : sequence of str, optional
         Such as ("y3",), whose absolute errors are to stay within the tolerance instead.
+    columns : mapping of names to functions of a run, optional
+        Further numbers, such as ``{"over_bound": over_bound(form)}``, or `percept_obs.studies.consistency.CLAIMS`.
     **settings
         Passed to `track`, such as ``hold`` and ``believed``.
 
     Returns
     -------
-    pandas.DataFrame
-        One row for a recording and an observer, with errors of the inverse distance in 1/m: observer, recording,
-        outcome (a kind of `Outcome`), settling_time (s, infinite if it has not converged), final, rms and worst (from
-        `after` on), resets, diverged_at (s since the first sample, infinite if it does not), cost (seconds of computing
-        for a second of data).
+    Comparison
+        Its table has, with errors of the inverse distance in 1/m, outcome (a kind of `Outcome`), settling_time (s,
+        infinite if it has not converged), final, rms and worst (from `after` on).
 
     Raises
     ------
@@ -76,18 +262,16 @@ def compare(
 
     See Also
     --------
-    summary : medians and quantiles of the table
+    percept_obs.studies.all_observers.all_observers : every observer, with gains that are chosen
     percept_obs.ensemble : many runs of one observer
 
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, ekf, ibo, pinhole, record, scenarios
     >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
-    >>> table = compare([record(scenarios.ma2005_eq35(), 5)], [ibo(form), ekf(form)])
-    >>> summary(table)["failed"].tolist()
+    >>> compare([record(scenarios.ma2005_eq35(), 5)], [ibo(form), ekf(form)]).summary["failed"].tolist()
     [0, 0]
     """
-    pd = load_pandas()
     if not isinstance(observers, Mapping):
         names = [observer.name for observer in observers]
         if len(set(names)) != len(names):
@@ -100,98 +284,46 @@ def compare(
     brief = recordings[0].between(*recordings[0].time[:2].tolist())
     for run in bar(follow.values(), "compiling"):
         run(brief)  # so that the cost is without compiling
-    rows = []
-    for recording, label in bar([*product(recordings, follow)], "runs"):
-        run, cost = timed(follow[label], recording)
+
+    def measures(run: Run) -> dict[str, Any]:
         outcome = run.outcome(tolerance, *coordinates)
-        error = np.abs(recording.imaging_surface.inverse(run.error))
+        error = np.abs(run.recording.imaging_surface.inverse(run.error))
         late = error[from_the_start(run.elapsed, after)]
         if not len(late):
-            raise ValueError(f"no sample of {recording.source!r} lies {after} s or more after its first one")
-        rows.append(
-            {
-                "observer": label,
-                "recording": recording.source,
-                "outcome": outcome.kind,
-                "settling_time": outcome.settled if outcome.converged else math.inf,
-                "final": error[-1],
-                "rms": math.sqrt(np.mean(late**2)),
-                "worst": late.max(),
-                "resets": len(run.resets),
-                "diverged_at": math.inf if run.diverged_at is None else run.diverged_at - float(run.time[0]),
-                "cost": cost,
-            }
-        )
-    # a run that diverged has no error
-    return pd.DataFrame(rows).fillna({"final": math.inf, "rms": math.inf, "worst": math.inf})
+            raise ValueError(f"no sample of {run.recording.source!r} lies {after} s or more after its first one")
+        errors = {"final": error[-1], "rms": math.sqrt(np.mean(late**2)), "worst": late.max()}
+        return {
+            "outcome": outcome.kind,
+            "settling_time": outcome.settled if outcome.converged else math.inf,
+            # a run that diverged has no error
+            **{name: math.inf if math.isnan(value) else float(value) for name, value in errors.items()},
+            **{name: of(run) for name, of in (columns or {}).items()},
+        }
+
+    rows = [row for label, run in follow.items() for row in rows_of(label, run, recordings, measures)]
+    return Comparison(load_pandas().DataFrame(rows), reporting=recordings)
 
 
-@checked
-def summary(table: pd.DataFrame) -> pd.DataFrame:
-    """Summarise a comparison, one row an observer.
-
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        From `compare`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        runs; failed (not converged), reset (runs with a reset), diverged; and for settling_time, final, rms, worst and
-        cost the median with the 16 % and 84 % quantiles (columns name, name_low, name_high).
-
-    Raises
-    ------
-    ValueError
-        If the table lacks columns of `compare`.
-
-    See Also
-    --------
-    compare : Makes the table.
-
-    Examples
-    --------
-    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios
-    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
-    >>> table = compare([record(make(), 5) for make in (scenarios.ma2005_eq35, scenarios.planar)], [ibo(form)])
-    >>> summary(table)[["runs", "failed", "diverged"]].values.tolist()
-    [[2, 0, 0]]
-    """
-    pd = load_pandas()
-    if missing := sorted({"observer", "settling_time", "resets", "diverged_at", *MEASURES} - set(table)):
-        raise ValueError(f"the table has no columns {', '.join(missing)}; give one from compare()")
-    observers = table.groupby("observer", sort=False)
-    counts = {
-        "failed": np.isinf(table["settling_time"]),
-        "reset": table["resets"] > 0,
-        "diverged": np.isfinite(table["diverged_at"]),
-    }
-    found = {"runs": observers.size()}
-    found |= {name: flags.groupby(table["observer"], sort=False).sum() for name, flags in counts.items()}
-    for column, (end, share) in product(MEASURES, (("", 0.5), ("_low", 0.16), ("_high", 0.84))):
-        # by rank, for infinite values have no mean
-        found[column + end] = observers[column].agg(np.quantile, share, method="nearest")
-    return pd.DataFrame(found).rename_axis(None)
-
-
-@checked
-def described(found: pd.DataFrame) -> str:
-    """Format a `summary` as text: counts, and medians with their quantiles."""
-    pd = load_pandas()
-    columns = {name: found[name].map("{:.0f}".format) for name in ("runs", "failed", "reset", "diverged")}
-    for name in MEASURES[:-1]:
-        ends = zip(found[name], found[name + "_low"], found[name + "_high"], strict=True)
-        columns[name] = [f"{median:.2g} ({low:.2g} to {high:.2g})" for median, low, high in ends]
-    columns["cost"] = (1e6 * found["cost"]).map("{:.0f} us/s".format)
-    return str(pd.DataFrame(columns).to_string())
-
-
-def timed(follow: Callable[[Recording], Run], recording: Recording) -> tuple[Run, float]:
-    """Return the run on a recording, and the seconds of computing for a second of data."""
-    begin = time.perf_counter()
-    run = follow(recording)
-    return run, (time.perf_counter() - begin) / float(recording.elapsed[-1])
+def rows_of(
+    label: str,
+    estimate: Estimate,
+    recordings: Sequence[Recording],
+    measures: Callable[[Run], Mapping[str, Any]],
+    about: Mapping[str, str] | None = None,
+) -> list[dict[str, Any]]:
+    """Return the rows of `Comparison.table` for one observer; no run is kept."""
+    rows = []
+    for recording in bar(recordings, f"runs of {label}"):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", StepTooLong)
+            begin = time.perf_counter()
+            run = estimate(recording)
+            cost = (time.perf_counter() - begin) / float(recording.elapsed[-1])
+        row: dict[str, Any] = {"observer": label, **(about or {}), "recording": recording.source, **measures(run)}
+        diverged = math.inf if run.diverged_at is None else run.diverged_at - float(run.time[0])
+        row |= {"resets": len(run.resets), "diverged_at": diverged, "cost": cost, "refusal": ""}
+        rows.append(row | {"warning": "".join([str(w.message) for w in caught if w.category is StepTooLong][:1])})
+    return rows
 
 
 @checked
@@ -268,61 +400,67 @@ def errors_of(
     return errors
 
 
-@checked
-def best_setting(
-    recordings: Sequence[Recording],
-    observers: Iterable[AnyObserver],
-    follow: Follow,
-    after: Sequence[float] = (2.0,),
-    reference: str = "truth",
-) -> Observer:
-    """Return the observer with the least median relative distance error, summed over the given times.
+def error_at(run: Run, after: float, reference: str) -> float:
+    """Return the relative error of the distance of a run: infinite if there is no estimate, NaN if it ends earlier."""
+    found = errors_of(run, after, reference)
+    return float(np.nan_to_num(found[0], nan=np.inf, posinf=np.inf)) if found else math.nan
 
-    Choose on some recordings and report on others: errors on the recordings that were chosen on are too small.
+
+@checked
+def over_bound(form: PartitionedSystem, tolerance: float = TOLERANCE) -> Callable[[Run], float]:
+    """Return a column for `compare`: the distance's rms error over its Cramer-Rao bound, in a run's second half.
+
+    It is infinite for a run whose distance does not stay within the tolerance at the end.
 
     Parameters
     ----------
-    recordings : sequence of Recording
-        With a truth or the reference; those that end too early do not count.
-    observers : iterable of Observer
-        One structure with different gains, or several structures.
-    follow : function of (recording, observer)
-        Runs an observer, for instance ``lambda r, o: track(r, o, start)``.
-    after : sequence of float
-        Seconds since the first sample.
-    reference : str
-        "truth", or the name of a measured distance of the recordings.
+    form : PartitionedSystem
+        Which outputs are measured.
+    tolerance : float
+        Relative.
 
-    Raises
-    ------
-    ValueError
-        If there are no recordings, observers or times, or no recording lasts as long.
+    Returns
+    -------
+    function of a Run
+        That raises ValueError if its recording has no truth or no known noise, or does not fit the form.
 
     See Also
     --------
-    percept_obs.studies.tuning.choose_and_report : chooses the gains of several observers and reports their errors
-    percept_obs.studies.likelihood.tune_by_likelihood : chooses a filter's gains without a truth
+    percept_obs.efficiency : The ratio at each time.
+    percept_obs.figures.efficiencies : Draws it over the settling time.
+
+    Notes
+    -----
+    The bound holds without bias, and for exact motion: errors of a real motion come on top of it.  Recordings of one
+    scene share it.
 
     Examples
     --------
-    >>> from percept_obs import PerspectiveSystem, affine, ibo, pinhole, record, scenarios, track
-    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
-    >>> seen, settings = [record(scenarios.ma2005_eq35(), 3)], [ibo(form, gain=gain) for gain in (2, 10)]
-    >>> best_setting(seen, settings, lambda recording, observer: track(recording, observer)) is settings[1]
+    >>> from percept_obs import Camera, Gaussian, PerspectiveSystem, affine, ekf, pinhole, record, scenarios
+    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1")
+    >>> seen = [record(scenarios.ma2005_eq35(), 8, Camera(0.05, Gaussian(0.01)), seed) for seed in range(4)]
+    >>> found = compare(seen, [ekf(form, noise_variance=1e-4)], columns={"over_bound": over_bound(form)})
+    >>> bool(0.5 < found.summary.loc["extended Kalman", "over_bound"] < 2)
     True
     """
-    candidates = list(observers)
-    if not (len(recordings) and candidates and len(after)):
-        raise ValueError(
-            f"{len(recordings)} recordings, {len(candidates)} observers and {len(after)} times: at least one of "
-            "each is needed to choose the best"
+    known: list[tuple[Recording, Array]] = []
+
+    def alike(one: Recording, other: Recording) -> bool:
+        return one is other or (
+            one.noise_variance == other.noise_variance
+            and np.array_equal(np.asarray(one.truth), np.asarray(other.truth))
+            and np.array_equal(one.seen, other.seen)
         )
 
-    def score(observer: Observer) -> float:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", StepTooLong)  # a chattering candidate has large errors, so it is not chosen
-            runs = [follow(recording, observer) for recording in recordings]
-        total = float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
-        return math.inf if math.isnan(total) else total  # a run that diverged is never the best
+    def of(run: Run) -> float:
+        bound = next((found for other, found in known if alike(other, run.recording)), None)
+        if bound is None:
+            bound = cramer_rao(run.recording, form).relative
+            known.append((run.recording, bound))
+        late = (run.elapsed >= run.elapsed[-1] / 2) & np.isfinite(run.distance)
+        if not late.any() or not math.isfinite(run.settling_time(tolerance)):
+            return math.inf
+        error = (run.distance / run.recording.reference("truth") - 1)[late] / bound[late]
+        return math.sqrt(float(np.mean(error**2)))
 
-    return candidates[int(np.argmin([score(each) for each in bar(candidates, "candidates")]))]
+    return of

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -14,7 +15,7 @@ from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import diverged
 from percept_obs.validation import checked
 
-__all__ = ["Consistency", "check_consistency", "claimed_distance", "claimed_interval"]
+__all__ = ["CLAIMS", "Consistency", "check_consistency", "claimed_distance", "claimed_interval"]
 
 DEVIATIONS = 2.0
 """Claimed standard deviations to either side of an estimate: 95 % of a normal distribution."""
@@ -96,6 +97,26 @@ def claimed_distance(run: Run) -> tuple[Array, Array]:
     low, high = (end[:, -1] for end in claimed_interval(run))
     nearest, farthest = (np.divide(1, end, out=np.full_like(end, np.inf), where=~(end <= 0)) for end in (high, low))
     return nearest, farthest
+
+
+def _mean_nis(run: Run) -> float:
+    claims = run.observer.covariance is not None and run.observer.equations.update
+    return float(np.nanmean(run.nis)) / len(run.observer.form.x1) if claims else math.nan
+
+
+def _within_claim(run: Run) -> float:
+    if run.observer.covariance is None:
+        return math.nan
+    nearest, farthest = claimed_distance(run)
+    distance = run.recording.distance
+    return float(np.mean(((nearest <= distance) & (distance <= farthest))[np.isfinite(distance)]))
+
+
+CLAIMS = MappingProxyType({"nis": _mean_nis, "within_claim": _within_claim})
+"""Columns for `compare`: mean NIS over the number of outputs, share of the true distances within the claimed interval.
+
+1 and 0.95 are expected; both are NaN for an observer that claims nothing.
+"""
 
 
 @checked
@@ -236,7 +257,7 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
 
     See Also
     --------
-    percept_obs.studies.likelihood.tune_by_likelihood : Chooses gains whose claims hold.
+    percept_obs.studies.tuning.tune_by_likelihood : Chooses gains whose claims hold.
     percept_obs.figures.consistency : Draws the moving averages.
 
     Notes

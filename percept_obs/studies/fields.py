@@ -13,68 +13,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
 from percept_obs.validation import checked, limit, positive
 
-__all__ = ["AngleNoise", "FieldBound", "PixelNoise", "field_bound"]
-
-
-@checked
-@dataclass(frozen=True)
-class PixelNoise:
-    """Noise of equal size everywhere in the picture.
-
-    Parameters
-    ----------
-    sigma : float
-        Standard deviation in pixels, in each output.
-    across : float
-        Pixels across the field of view.
-
-    See Also
-    --------
-    AngleNoise : Of equal angle.
-    field_bound : Takes one of them.
-
-    Examples
-    --------
-    >>> from percept_obs import affine, pinhole
-    >>> sideways = affine([[0.0] * 3] * 3, [0.5, 0, 0])
-    >>> [round(field_bound(pinhole(), sideways, PixelNoise(sigma), size=9).median, 4) for sigma in (0.5, 1.0)]
-    [0.0036, 0.0072]
-    """
-
-    sigma: float = 0.5
-    across: float = 640.0
-
-    def __post_init__(self) -> None:
-        positive(sigma=self.sigma, across=self.across)
-
-
-@checked
-@dataclass(frozen=True)
-class AngleNoise:
-    """Noise of equal angle in every direction, as if the ray itself were measured.
-
-    Parameters
-    ----------
-    sigma : float
-        Standard deviation in radians, across the ray in both directions.
-
-    See Also
-    --------
-    PixelNoise : Of equal size in the picture.
-    field_bound : Takes one of them.
-
-    Examples
-    --------
-    >>> from percept_obs import affine, pinhole, sphere
-    >>> sideways = affine([[0.0] * 3] * 3, [0.5, 0, 0])
-    >>> [round(field_bound(each, sideways, AngleNoise(), size=9).median, 4) for each in (pinhole(), sphere())]
-    [0.0055, 0.0055]
-    """
-
-    sigma: float = 0.002
-
-    def __post_init__(self) -> None:
-        positive(sigma=self.sigma)
+__all__ = ["FieldBound", "field_bound"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -102,7 +41,7 @@ class FieldBound:
     --------
     >>> from percept_obs import affine, pinhole
     >>> forwards = affine([[0.0] * 3] * 3, [0, 0, -0.5])
-    >>> found = field_bound(pinhole(), forwards, PixelNoise(), size=21)
+    >>> found = field_bound(pinhole(), forwards, size=21)
     >>> found.within(0.0, 0.1) > 5 * found.within(0.4, 0.6)
     True
     """
@@ -136,14 +75,16 @@ class FieldBound:
 def field_bound(
     surface: ImagingSurface,
     motion: Motion,
-    noise: PixelNoise | AngleNoise,
     field_of_view: float = np.pi / 2,
+    pixels: float = 0.5,
+    angle: float | None = None,
     measured: tuple[str, ...] | None = None,
     seconds: float = 2.0,
     distance: float = 5.0,
     period: float = 0.05,
     size: int = 41,
     prior: float = 1.0,
+    across: float = 640.0,
 ) -> FieldBound:
     """Return the Cramer-Rao bound of the range of a point, for each direction in which it is first seen.
 
@@ -156,9 +97,12 @@ def field_bound(
         With numbers for its shape; its centre and the field of view must be seen on it.
     motion : Motion
         With numbers, constant or over time.
-    noise : PixelNoise or AngleNoise
     field_of_view : float
         Full angle in radians of the cone around the optical axis.
+    pixels : float
+        Standard deviation of the noise of each output, the same everywhere in the picture.
+    angle : float, optional
+        Standard deviation in radians across the ray in both directions, as if the ray itself were measured, instead.
     measured : tuple of str, optional
         Outputs that are measured; all of them when left out.
     seconds : float
@@ -171,6 +115,8 @@ def field_bound(
         Directions across the field of view.
     prior : float
         Relative standard deviation of a point before the first image, in each direction of space.
+    across : float
+        Pixels across the field of view.
 
     Raises
     ------
@@ -187,11 +133,14 @@ def field_bound(
     --------
     >>> from percept_obs import affine, pinhole, sphere
     >>> sideways = affine([[0.0] * 3] * 3, [0.5, 0, 0])
-    >>> wide = [field_bound(s, sideways, PixelNoise(), np.radians(150)).median for s in (pinhole(), sphere())]
+    >>> wide = [field_bound(s, sideways, np.radians(150)).median for s in (pinhole(), sphere())]
     >>> wide[0] > wide[1]
     True
+    >>> [round(field_bound(s, sideways, angle=0.002, size=9).median, 4) for s in (pinhole(), sphere())]
+    [0.0055, 0.0055]
     """
-    positive(seconds=seconds, distance=distance, period=period, prior=prior)
+    positive(seconds=seconds, distance=distance, period=period, prior=prior, pixels=pixels, across=across)
+    positive(angle=1.0 if angle is None else angle)
     if motion.signal is None:
         raise ValueError(f"the {motion.name} motion has no numbers; give it some, such as affine(A, b)")
     if not 0 < field_of_view <= surface.field_of_view + 1e-6:
@@ -214,12 +163,13 @@ def field_bound(
     starts = starts[inside]
     information = np.eye(3) / (prior * distance) ** 2 + np.zeros((len(starts), 3, 3))
     rows = [surface.image[names.index(name)] for name in measured]
+    sigma = pixels * pixel(surface, field_of_view, across)
     gradient = vectorised(POINT, [row.diff(axis) for row in rows for axis in POINT], surface.values)
     for Phi, moved in zip(*displacements(motion, times), strict=True):
         points = starts @ Phi.T + moved
         seen = _inside(points, field_of_view) & surface.sees(points)
         D = np.stack(gradient(*points[seen].T), axis=-1).reshape(-1, len(rows), 3)
-        gained = D.swapaxes(1, 2) @ _weights(D, surface, points[seen], noise, field_of_view) @ D
+        gained = D.swapaxes(1, 2) @ _weights(D, points[seen], sigma, angle) @ D
         information[seen] += Phi.T @ gained @ Phi
     ends = starts @ Phi.T + moved
     lengths = np.linalg.norm(ends, axis=1)
@@ -239,13 +189,11 @@ def pixel(surface: ImagingSurface, field_of_view: float, across: float) -> float
     return float(np.ptp(surface.project(ring)[:, :2], axis=0).max() / across)
 
 
-def _weights(
-    D: Array, surface: ImagingSurface, points: Array, noise: PixelNoise | AngleNoise, field_of_view: float
-) -> Array:
+def _weights(D: Array, points: Array, sigma: float, angle: float | None) -> Array:
     """Inverse of the covariance of the outputs' noise, shape (K, m, m) or (m, m)."""
-    if isinstance(noise, PixelNoise):
-        return np.eye(D.shape[1]) / (noise.sigma * pixel(surface, field_of_view, noise.across)) ** 2
-    spread = (noise.sigma**2 * np.sum(points**2, axis=1))[:, None, None] * D @ D.swapaxes(1, 2)
+    if angle is None:
+        return np.eye(D.shape[1]) / sigma**2
+    spread = (angle**2 * np.sum(points**2, axis=1))[:, None, None] * D @ D.swapaxes(1, 2)
     # three outputs depend on each other, so that their noise has no share along one direction
     return np.asarray(np.linalg.pinv(spread, rcond=1e-10, hermitian=True))
 

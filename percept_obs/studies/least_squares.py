@@ -16,7 +16,7 @@ from percept_obs.system.signal import slack_of
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked, positive, travels
 
-__all__ = ["LeastSquares", "moving_window_least_squares"]
+__all__ = ["moving_window_least_squares"]
 
 LARGEST_CONDITION = 1e6
 """Condition number of the normal equations beyond which a window determines no point."""
@@ -25,24 +25,7 @@ LARGEST_CONDITION = 1e6
 @travels
 @dataclass(frozen=True, eq=False)
 class LeastSquares:
-    """Least squares in the place of a run's observer.
-
-    Parameters
-    ----------
-    recording : Recording
-    window : float
-        Seconds.
-
-    See Also
-    --------
-    moving_window_least_squares : The run that has it.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, record, scenarios
-    >>> moving_window_least_squares(record(scenarios.ma2005_eq35(), 3, Camera(0.05)), 1.0).observer.name
-    'least squares on 1 s'
-    """
+    """Least squares in the place of a run's observer."""
 
     recording: Recording
     window: float

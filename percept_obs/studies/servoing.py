@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -22,10 +21,7 @@ from percept_obs.recording import Recording
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
-from percept_obs.validation import bar, checked, load_pandas, positive, travels
-
-if TYPE_CHECKING:
-    import pandas as pd
+from percept_obs.validation import bar, checked, positive, travels
 
 SYSTEM = PerspectiveSystem(rigid(), pinhole())
 STEERING = steering(SYSTEM)
@@ -240,7 +236,6 @@ def servo(
     See Also
     --------
     starts : Draws some.
-    comparison : Compares depths.
 
     Notes
     -----
@@ -332,53 +327,3 @@ def starts(count: int, seed: int = 0) -> Array:
         pose = generator.uniform([-0.5, -0.5, -0.4, -0.4, -0.4, -1.0], high)
         found += [pose] if _in_sight(_points(pose[None]))[0] else []
     return np.array(found)
-
-
-@checked
-def comparison(
-    depths: Mapping[str, str | Observer], poses: ArrayLike, tolerance: float = 0.02, **settings: Any
-) -> pd.DataFrame:
-    """Compare depths from the same starts, with 95 % intervals.
-
-    Parameters
-    ----------
-    depths : mapping of labels to depths, see `servo`
-    poses : array of shape (S, 6)
-    tolerance : float
-        See `Servoing.arrived_at`.
-    **settings
-        Passed to `servo`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row a label: arrived (share), arrived_low, arrived_high, lost (share), time (median in s of those that
-        arrive), time_low, time_high, overshoot (median), overshoot_low, overshoot_high.
-
-    See Also
-    --------
-    servo : One of them.
-
-    Examples
-    --------
-    >>> from percept_obs.studies.servoing import comparison, starts
-    >>> comparison({"true": "true"}, starts(5), duration=6.0)["arrived"].tolist()
-    [1.0]
-    """
-    pd = load_pandas()
-    from scipy.stats import binomtest, quantile_test
-
-    rows = {}
-    for label, depth in depths.items():
-        run = servo(poses, depth, **settings)
-        arrived = run.arrived_at(tolerance)
-        there = np.isfinite(arrived)
-        share = binomtest(int(there.sum()), len(there)).proportion_ci()
-        row = {"arrived": there.mean(), "arrived_low": share.low, "arrived_high": share.high}
-        row["lost"] = run.lost[:, -1].mean()
-        for name, values in (("time", arrived), ("overshoot", run.overshoot)):
-            between = quantile_test(values[there]).confidence_interval() if there.any() else (np.nan, np.nan)
-            row |= {name: np.median(values[there]) if there.any() else np.nan}
-            row |= dict(zip((f"{name}_low", f"{name}_high"), between, strict=True))
-        rows[label] = row
-    return pd.DataFrame.from_dict(rows, orient="index")

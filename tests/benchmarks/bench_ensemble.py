@@ -24,7 +24,7 @@ from other_packages import BATCH, contenders, together_of
 
 from percept_obs import Camera, PerspectiveSystem, Uniform, affine, ensemble, ibo, pinhole, record, scenarios, track
 from percept_obs.compile import solve
-from percept_obs.studies import chunks
+from percept_obs.studies import ensemble as module
 
 SCENARIO = scenarios.ma2005_eq35()
 FORM = PerspectiveSystem(affine(), pinhole()).measure("y1")
@@ -57,7 +57,7 @@ To repeat it, install what is to be compared, and write this page anew:
 
 def alone_on_a_core(*arguments, **settings):
     """An ensemble on one thread, as all others: two threads of one core count more CPU seconds for the same work."""
-    with mock.patch.object(chunks, "workers", return_value=1):
+    with mock.patch.object(module, "workers", return_value=1):
         return ensemble(*arguments, **settings)
 
 

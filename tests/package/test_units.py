@@ -39,13 +39,12 @@ from percept_obs.observers import OBSERVERS, de_luca, ismo, spica
 from percept_obs.points import independent_points, riccati
 from percept_obs.structure import ScaledDepthCamera, StructureScenario, linear_view
 from percept_obs.structure.scenarios import chwa2019_experiment
-from percept_obs.studies.all_observers import all_observers
+from percept_obs.studies.all_observers import all_observers, own_length
 from percept_obs.studies.comparison import compare
 from percept_obs.studies.consistency import claimed_distance
 from percept_obs.studies.least_squares import moving_window_least_squares
-from percept_obs.studies.likelihood import tune_by_likelihood
 from percept_obs.studies.sensitivity import sensitivity
-from percept_obs.studies.tuning import own_length
+from percept_obs.studies.tuning import tune_by_likelihood
 from percept_obs.system.motion import TIME
 
 UNITS = {"mm": 1000.0, "km": 0.001, "feet": 3.28084}
@@ -98,8 +97,8 @@ def run_of(make, varying, form, unit):
 
 
 def compared(form, unit):
-    table = compare([seen(unit), seen(unit, seed=1)], [ibo(form), ekf(form)], {"y3": 0.5 / unit}, after=2)
-    return numbers(table, unit, ("final", "rms", "worst"))
+    found = compare([seen(unit), seen(unit, seed=1)], [ibo(form), ekf(form)], {"y3": 0.5 / unit}, after=2)
+    return numbers(found.table, unit, ("final", "rms", "worst"))
 
 
 def all_of(form, unit):

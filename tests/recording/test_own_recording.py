@@ -269,5 +269,4 @@ def test_from_a_folder_to_a_table_of_all_observers_in_eight_lines(tmp_path, monk
     table = found.side_by_side
     assert len(table) == 12
     assert "needs a motion with constant coefficients" in table.loc["immersion and invariance", "remark"]
-    kalman = found.table[found.table["observer"] == "extended Kalman"].set_index("after")
-    assert kalman.loc[1.0, "median"] < 0.05
+    assert found.summary.loc["extended Kalman", "truth 1 s"] < 0.05

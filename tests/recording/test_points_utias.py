@@ -14,7 +14,8 @@ from percept_obs.points.gramian import gramian
 from percept_obs.points.ray import ray_error, ray_turning
 from percept_obs.points.utias import OUT_OF_SIGHT, load_utias_points
 from percept_obs.recording.utias import UTIAS_CUT, load_utias
-from percept_obs.studies.comparison import best_setting, relative_distance_errors
+from percept_obs.studies.comparison import relative_distance_errors
+from percept_obs.studies.tuning import best_setting
 
 STARTS, FORGETTING = (0.001, 0.003, 0.01), (0.0, 0.3)
 CHOSEN_ON, REPORTED_ON = range(0, 12, 2), range(1, 12, 2)

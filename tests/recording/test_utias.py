@@ -10,9 +10,9 @@ import pytest
 from percept_obs import PerspectiveSystem, ekf, ibo, pinhole, rigid, track
 from percept_obs.observers import OBSERVERS, immersion_and_invariance
 from percept_obs.recording.utias import UTIAS_CUT, load_utias
-from percept_obs.studies.comparison import best_setting, relative_distance_errors
-from percept_obs.studies.least_squares import moving_window_least_squares
-from percept_obs.studies.tuning import choose_and_report, side_by_side
+from percept_obs.studies.all_observers import LEAST_SQUARES, all_observers
+from percept_obs.studies.comparison import relative_distance_errors
+from percept_obs.studies.tuning import best_setting
 
 FORM = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
 
@@ -83,23 +83,19 @@ BEHIND = {"range identification": 2, "integral sliding mode": 3}
 @pytest.mark.slow
 def test_all_observers_in_one_table():
     """Samples are held, as a running system must; steps of 2 ms, for the cascade's gain is stiff at the start."""
-
-    def follow(recording, observer):
-        return track(recording, observer, twice_the_median_depth(), step=0.002, language="numba")
-
-    batch = {"least squares on 2 s": moving_window_least_squares}
-    halves = recordings()[::2], recordings()[1::2]
-    table = choose_and_report(*halves, FORM, follow, batch=batch, references=("truth", "stereo"), length=1.0)
-    print(side_by_side(table).to_string())
-    assert set(table["observer"]) == {make(FORM).name for make in OBSERVERS} | set(batch)
+    start, references = twice_the_median_depth(), ("truth", "stereo")
+    settings = {"start": start, "references": references, "length": 1.0, "step": 0.002, "language": "numba"}
+    found = all_observers(recordings(), **settings)
+    print(found)
+    assert set(found.summary.index) == {make(FORM).name for make in OBSERVERS} | {LEAST_SQUARES}
     for label, medians in MEDIANS.items():
-        rows = table[table["observer"] == label].set_index(["reference", "after"])
-        found = [[rows.loc[(reference, after), "median"] for after in (1, 2, 3)] for reference in ("truth", "stereo")]
-        np.testing.assert_allclose(found, medians, rtol=0.05, err_msg=label)
-        assert rows["diverged"].max() == 0
-        assert rows["behind"].max() == BEHIND.get(label, 0)
-    refused = table[table["observer"] == "immersion and invariance"]
-    assert refused["refusal"].str.contains("needs a motion with constant coefficients").all()
+        line = found.summary.loc[label]
+        errors = [[line[f"{reference} {after} s"] for after in (1, 2, 3)] for reference in references]
+        np.testing.assert_allclose(errors, medians, rtol=0.05, err_msg=label)
+        assert line["diverged"] == 0
+        assert line["behind"] == BEHIND.get(label, 0)
+    refused = found.table.set_index("observer").loc["immersion and invariance", "refusal"]
+    assert "needs a motion with constant coefficients" in refused
 
 
 @pytest.mark.slow

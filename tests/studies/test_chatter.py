@@ -7,7 +7,7 @@ import pytest
 from examples import BOTH, ZERO
 from refusals import refuses
 
-from percept_obs import record, scenarios
+from percept_obs import figures, record, scenarios
 from percept_obs.observers import range_identification, sliding_mode
 from percept_obs.studies.chatter import METHODS, chatter, effort
 
@@ -88,3 +88,35 @@ test_bad_input_is_refused = refuses(
     (lambda: effort(EQ35, sliding_mode(BOTH), -1), "duration -1 s"),
     (lambda: effort(EQ35, sliding_mode(BOTH), 1, tolerance=float("nan")), "tolerance nan"),
 )
+
+
+@pytest.fixture(scope="module")
+def chattering():
+    scenario = EQ35
+    smooth, switching = sliding_mode(BOTH), sliding_mode(BOTH, switch="sign")
+    errors = {"sign": chatter(record(scenario, 2), switching, [0.01, 0.005], ZERO, 1)}
+    efforts = {"sign": effort(scenario, switching, 2, most=2000), "fraction": effort(scenario, smooth, 2)}
+    return errors, efforts
+
+
+def test_chatter_draws_errors_over_steps_and_steps_over_time(chattering):
+    errors, efforts = chattering
+    left, right = figures.chatter(errors, efforts).axes
+    np.testing.assert_array_equal(left.lines[0].get_data(), errors["sign"][["step", "y3"]].T)
+    for line, one in zip(right.lines, efforts.values(), strict=True):
+        np.testing.assert_array_equal(line.get_data(), [one.time[1:], one.steps])
+    assert left.lines[0].get_linestyle() == right.lines[0].get_linestyle() != right.lines[1].get_linestyle()
+    names = [[text.get_text() for text in ax.get_legend().get_texts()] for ax in (left, right)]
+    assert names == [["sign"], ["fraction"]]
+
+
+def test_the_text_of_chatter_says_how_each_solver_got_on(chattering):
+    errors, efforts = chattering
+    text = figures.chatter(errors, efforts).text
+    stopped = efforts["sign"]
+    assert f"sign: error at a step of 0.01 s {errors['sign']['y3'][0]:.2g}" in text
+    assert f"sign: RK45 gave up at {stopped.time[-1]:.2g} s after {stopped.evaluations[-1]} evaluations" in text
+    assert f"fraction: RK45 arrived at 2 s after {efforts['fraction'].evaluations[-1]} evaluations" in text
+    for given in ((errors, {}), ({}, efforts)):
+        with pytest.raises(ValueError, match="at least one of each"):
+            figures.chatter(*given)

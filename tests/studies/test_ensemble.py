@@ -1,5 +1,11 @@
-"""An ensemble says of every run what `track` says of it, whatever varies, in any chunks, and keeps what is done."""
+"""An ensemble says of every run what `track` says of it, in any chunks, here or on a cluster; what is done is kept."""
 
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import as_completed
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,6 +13,7 @@ import numpy as np
 import pytest
 from examples import AFFINE, BOTH, NOISY, ONE, SURFACES
 from numpy.testing import assert_array_equal
+from places import SUPPORT
 from refusals import refuses
 
 from percept_obs import (
@@ -30,10 +37,9 @@ from percept_obs import (
 )
 from percept_obs.observers import OBSERVERS
 from percept_obs.recording.many import with_numbers
-from percept_obs.studies import chunks
-from percept_obs.studies.chunks import Unfinished, open_store
-from percept_obs.studies.plan import STATUS, Plan
-from percept_obs.studies.statistics import OUTCOMES
+from percept_obs.studies import ensemble as module
+from percept_obs.studies.ensemble import Unfinished, open_store
+from percept_obs.studies.plan import OUTCOMES, STATUS, Plan
 from percept_obs.validation import environment
 
 pytestmark = pytest.mark.usefixtures("xr")
@@ -225,7 +231,7 @@ def test_an_interrupted_ensemble_keeps_what_is_done_and_goes_on(xr, tmp_path, mo
             raise KeyboardInterrupt
         return compute(plan, chunk)
 
-    monkeypatch.setattr(chunks, "workers", lambda: 1)
+    monkeypatch.setattr(module, "workers", lambda: 1)
     monkeypatch.setattr(Plan, "compute", counted)
     with pytest.warns(Unfinished, match="of 8 runs are missing"):
         part = ensemble(EQ35, ibo(BOTH), over, duration=0.5, store=store, chunk=2)
@@ -297,3 +303,67 @@ def test_what_is_missing_is_told_with_how_to_get_it(monkeypatch):
     monkeypatch.setattr(environment, "find_spec", lambda name: None)
     with pytest.raises(ModuleNotFoundError, match=r'xarray is missing; get it with: .*"percept-obs\[course\]"'):
         ensemble(EQ35, ibo(AFFINE.measure("y1")))
+
+
+# Workers and clients that die cost time only: the numbers are the same, bit for bit.
+
+OVER = {"gain": np.linspace(2, 20, 16), "b1": [0.4, 0.5]}
+SETTINGS = {"over": OVER, "seeds": 4, "duration": 4.0, "camera": NOISY, "chunk": 8, "language": "python"}
+
+IN_A_STORE = """
+import numpy as np
+from examples import BOTH
+from test_ensemble import EQ35, SETTINGS
+from percept_obs import ensemble, ibo
+ensemble(EQ35, ibo(BOTH), **SETTINGS, store="kept.zarr")
+"""
+
+
+@pytest.fixture(scope="module")
+def alone():
+    """The ensemble computed on this machine."""
+    return ensemble(EQ35, ibo(BOTH), **SETTINGS)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")
+def test_a_killed_worker_costs_time_only(xr, alone, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "local_directory": tmp_path}
+    with distributed.LocalCluster(**cluster) as two, distributed.Client(two) as client:
+        pids, killed = list(client.run(os.getpid).values()), []
+
+        def first_then_kill(futures):
+            for future in as_completed(futures):
+                yield future
+                if not killed:
+                    killed.append(pids[0])
+                    os.kill(pids[0], getattr(signal, "SIGKILL", signal.SIGTERM))  # which ends it on Windows
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(module, "as_completed", first_then_kill)
+            found = ensemble(EQ35, ibo(BOTH), **SETTINGS, client=client, store=tmp_path / "kept.zarr")
+        assert killed
+    xr.testing.assert_identical(found, alone)
+
+
+@pytest.mark.slow
+def test_a_killed_ensemble_goes_on_where_it_was(xr, alone, tmp_path):
+    import zarr
+
+    store = tmp_path / "kept.zarr"
+    path = os.pathsep.join(filter(None, [str(SUPPORT), *sys.path]))
+    command = [sys.executable, "-c", IN_A_STORE]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    running = subprocess.Popen(command, **quiet, cwd=tmp_path, env=os.environ | {"PYTHONPATH": path})
+    chunks = store / "progress" / "runs" / "c"
+    while running.poll() is None and len(list(chunks.glob("*/0"))) < 3:
+        time.sleep(0.01)
+    running.kill()
+    running.wait()
+    done = (zarr.open_group(store, mode="r")["progress/runs"][:, 0] > 0).sum()
+    assert done % 8 == 0
+    assert 24 <= done < alone.status.size
+    ensemble(EQ35, ibo(BOTH), **SETTINGS, store=store)
+    with xr.open_zarr(store, consolidated=False) as found:
+        xr.testing.assert_identical(found.load(), alone)

@@ -18,7 +18,7 @@ from percept_obs import (
     sphere,
     unified,
 )
-from percept_obs.studies.fields import AngleNoise, PixelNoise, field_bound, pixel
+from percept_obs.studies.fields import field_bound, pixel
 from percept_obs.system.surfaces import POINT
 
 STILL = np.zeros((3, 3))
@@ -31,26 +31,26 @@ RIGHT = np.radians(90)
 
 @pytest.mark.slow
 def test_with_noise_of_equal_angle_every_surface_tells_the_same():
-    first, *others = (field_bound(surface, TURNING, AngleNoise(), RIGHT, **SMALL) for surface in SURFACES)
+    first, *others = (field_bound(surface, TURNING, RIGHT, angle=0.002, **SMALL) for surface in SURFACES)
     for other in others:
         np.testing.assert_allclose(other.relative, first.relative, rtol=1e-9)
 
 
 def test_with_one_output_they_do_not():
-    one, other = (field_bound(s, TURNING, AngleNoise(), RIGHT, ("y1",), **SMALL) for s in (pinhole(), sphere()))
+    one, other = (field_bound(s, TURNING, RIGHT, angle=0.002, measured=("y1",), **SMALL) for s in (pinhole(), sphere()))
     assert not np.allclose(one.relative, other.relative, rtol=0.1, equal_nan=True)
 
 
 def test_a_direction_that_is_measured_sideways_has_the_error_of_triangulation():
     """Two samples of the ray straight ahead, a baseline apart: the range's error is that of the angle between them."""
     sigma, distance, baseline = 1e-4, 5.0, 0.5
-    found = field_bound(sphere(), SIDEWAYS, AngleNoise(sigma), 2.0, seconds=1, distance=distance, period=1, size=3)
+    found = field_bound(sphere(), SIDEWAYS, 2.0, angle=sigma, seconds=1, distance=distance, period=1, size=3)
     assert found.relative[1, 1] == pytest.approx(np.sqrt(2) * sigma * distance / baseline, rel=0.02)
 
 
 @pytest.mark.parametrize("degrees", [40, 150])
 def test_a_wide_field_in_as_many_pixels_is_better_on_the_sphere_in_the_middle(degrees):
-    flat, curved = (field_bound(s, SIDEWAYS, PixelNoise(), np.radians(degrees)) for s in (pinhole(), sphere()))
+    flat, curved = (field_bound(s, SIDEWAYS, np.radians(degrees)) for s in (pinhole(), sphere()))
     edge = np.radians(degrees) / 2
     ratio = flat.within(0, edge / 3) / curved.within(0, edge / 3)
     # how much finer the middle is: dr/dtheta over the radius of the picture
@@ -60,23 +60,20 @@ def test_a_wide_field_in_as_many_pixels_is_better_on_the_sphere_in_the_middle(de
 
 
 def test_on_the_sphere_three_numbers_with_equal_noise_are_a_ray_with_the_noise_of_an_angle():
-    noise = PixelNoise(0.5, 640)
-    whole = field_bound(sphere(3), TURNING, noise, RIGHT, **SMALL)
-    angle = AngleNoise(noise.sigma * pixel(sphere(3), RIGHT, noise.across))
-    np.testing.assert_allclose(
-        whole.relative, field_bound(sphere(3), TURNING, angle, RIGHT, **SMALL).relative, rtol=1e-9
-    )
+    angle = 0.5 * pixel(sphere(3), RIGHT, 640)
+    whole, rays = (field_bound(sphere(3), TURNING, RIGHT, angle=each, **SMALL) for each in (None, angle))
+    np.testing.assert_allclose(whole.relative, rays.relative, rtol=1e-9)
 
 
 def test_a_third_output_of_a_plane_that_faces_the_camera_tells_nothing():
-    two, three = (field_bound(plane([0, 0, 1], outputs), TURNING, PixelNoise(), RIGHT, **SMALL) for outputs in (2, 3))
+    two, three = (field_bound(plane([0, 0, 1], outputs), TURNING, RIGHT, **SMALL) for outputs in (2, 3))
     np.testing.assert_allclose(two.relative, three.relative, rtol=1e-12)
-    tilted = [field_bound(plane([0.5, 0, 1], outputs), TURNING, PixelNoise(), 1.0, **SMALL) for outputs in (2, 3)]
+    tilted = [field_bound(plane([0.5, 0, 1], outputs), TURNING, 1.0, **SMALL) for outputs in (2, 3)]
     assert (tilted[1].relative < tilted[0].relative)[np.isfinite(tilted[0].relative)].all()
 
 
 def test_what_leaves_the_field_of_view_tells_no_more():
-    found = field_bound(pinhole(), affine(STILL, [1.0, 0, 0]), AngleNoise(), RIGHT, size=21)
+    found = field_bound(pinhole(), affine(STILL, [1.0, 0, 0]), RIGHT, angle=0.002, size=21)
     assert found.relative[10, -1] > 0.7
     assert found.relative[10, 0] < 0.01
 
@@ -85,9 +82,9 @@ def test_what_leaves_the_field_of_view_tells_no_more():
 def test_it_is_the_bound_of_the_trajectory(surface):
     away, seconds, prior = 4.0, 1.0, 0.5
     motion = affine([[0.0, -0.1, 0.0], [0.1, 0.0, 0.2], [0.0, -0.2, 0.0]], [0.5, 0.1, 0.2])
-    found = field_bound(surface, motion, PixelNoise(), RIGHT, seconds=seconds, distance=away, size=5, prior=prior)
+    found = field_bound(surface, motion, RIGHT, seconds=seconds, distance=away, size=5, prior=prior)
     start = away * np.array([np.sin(RIGHT / 4), 0.0, np.cos(RIGHT / 4)])
-    variance = (PixelNoise().sigma * pixel(surface, RIGHT, PixelNoise().across)) ** 2
+    variance = (0.5 * pixel(surface, RIGHT, 640)) ** 2
     recording = record(Scenario("one direction", motion, start, seconds, surface), camera=Camera(0.05))
     seen = sp.Matrix([*surface.image, 1 / surface.distance]).jacobian(POINT)
     there = np.array(seen.subs(dict(zip(POINT, start, strict=True))), dtype=float)
@@ -101,9 +98,9 @@ def test_it_is_the_bound_of_the_trajectory(surface):
 
 
 def test_a_motion_that_varies_in_name_only_tells_the_same():
-    constant = field_bound(pinhole(), affine(STILL, [0.5, 0, 0]), PixelNoise(), RIGHT, **SMALL)
+    constant = field_bound(pinhole(), affine(STILL, [0.5, 0, 0]), RIGHT, **SMALL)
     sampled = affine([STILL, STILL], [[0.5, 0, 0]] * 2, [0.0, 5.0])
-    found = field_bound(pinhole(), sampled, PixelNoise(), RIGHT, **SMALL)
+    found = field_bound(pinhole(), sampled, RIGHT, **SMALL)
     np.testing.assert_allclose(found.relative, constant.relative)
 
 
@@ -115,21 +112,19 @@ def test_a_motion_that_varies_in_name_only_tells_the_same():
         ({"measured": ("y3",)}, "has the outputs y1, y2"),
         ({"measured": ()}, "cannot be measured"),
         ({"distance": -1.0}, "distance is -1.0"),
+        ({"pixels": 0.0}, "positive"),
+        ({"angle": np.nan}, "positive"),
         ({"motion": affine()}, "has no numbers"),
         ({"size": 10**5}, "fewer directions"),
     ],
 )
 def test_what_makes_no_sense_is_refused(change, words):
     with pytest.raises(ValueError, match=words):
-        field_bound(**{"surface": pinhole(), "motion": SIDEWAYS, "noise": PixelNoise()} | change)
-    with pytest.raises(ValueError, match="positive"):
-        PixelNoise(sigma=0)
-    with pytest.raises(ValueError, match="positive"):
-        AngleNoise(sigma=np.nan)
+        field_bound(**{"surface": pinhole(), "motion": SIDEWAYS} | change)
 
 
 def test_the_figure_draws_and_tells_each_surface():
-    found = [field_bound(s, SIDEWAYS, PixelNoise(), RIGHT, **SMALL) for s in (pinhole(), sphere())]
+    found = [field_bound(s, SIDEWAYS, RIGHT, **SMALL) for s in (pinhole(), sphere())]
     figure = figures.fields(found)
     assert [ax.get_title() for ax in figure.axes] == ["pinhole", "sphere"]
     assert all(ax.images[0].get_clim() == figure.axes[0].images[0].get_clim() for ax in figure.axes)

@@ -36,7 +36,7 @@ from percept_obs.recording.pose_files import write_tum
 from percept_obs.recording.stereo_mat import read_stereo_mat
 from percept_obs.structure import pixels
 from percept_obs.structure import scenarios as structure_scenarios
-from percept_obs.studies import chatter, comparison, consistency, least_squares
+from percept_obs.studies import chatter, comparison, consistency, least_squares, tuning
 from percept_obs.system.signal import Signal
 
 PACKAGE = str(Path(po.__file__).parent)
@@ -212,9 +212,8 @@ def calls():
         (gramian.linear_gramian, {"recording": seen, "window": 1.0}),
         (gramian.decay_bound, {"recording": seen, "observer": luenberger, "window": 1.0}),
         (comparison.compare, {"recordings": [recording], "observers": [observer], "tolerance": 0.1, "after": 0.5}),
-        (comparison.summary, {"table": comparison.compare([recording], [observer])}),
         (comparison.relative_distance_errors, {"runs": [run], "after": 1.0, "reference": "truth", "absence": 1.0}),
-        (comparison.best_setting, {"recordings": [recording], "observers": [observer], "follow": po.track}),
+        (tuning.best_setting, {"recordings": [recording], "observers": [observer], "follow": po.track}),
         (po.check_consistency, {"run": filtered, "samples": 5, "after": 0.1, "confidence": 0.9}),
         (consistency.claimed_interval, {"run": filtered}),
         (consistency.claimed_distance, {"run": filtered}),

@@ -35,7 +35,7 @@ from percept_obs import (
 )
 from percept_obs.labs import observer_lab, points_lab, structure_lab
 from percept_obs.observers import OBSERVERS
-from percept_obs.studies.fields import PixelNoise, field_bound
+from percept_obs.studies.fields import field_bound
 
 PROJECT, README, CITATION, PAPER = (ROOT / n for n in ("pyproject.toml", "README.md", "CITATION.cff", "paper.md"))
 TEXTS = ROOT / "percept_obs/site/texts"
@@ -63,8 +63,8 @@ def map_of_the_bound():
 
 def three_surfaces():
     """The same for three cameras with equal pixels that move sideways, in all directions that they see."""
-    sideways, noise = affine(np.zeros((3, 3)), [0.5, 0, 0]), PixelNoise(sigma=0.5, across=640)
-    seen = [field_bound(surface, sideways, noise, np.radians(150)) for surface in (pinhole(), unified(0.8), sphere())]
+    sideways = affine(np.zeros((3, 3)), [0.5, 0, 0])
+    seen = [field_bound(surface, sideways, np.radians(150)) for surface in (pinhole(), unified(0.8), sphere())]
     return figures.fields(seen)
 
 

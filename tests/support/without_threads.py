@@ -75,7 +75,7 @@ def work_on_data(scenario, recording, form):
     from percept_obs.studies.comparison import compare
 
     try:
-        assert len(compare([recording], [po.ibo(form), po.ekf(form)])) == 2
+        assert len(compare([recording], [po.ibo(form), po.ekf(form)]).table) == 2
         assert po.ensemble(scenario, po.ibo(form), seeds=3, duration=1.0, chunk=1).sizes["seed"] == 3
     except ModuleNotFoundError as error:
         return str(error)

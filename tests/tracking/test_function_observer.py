@@ -58,7 +58,7 @@ def test_a_filter_as_a_function_runs_as_the_filter_in_equations(unit):
 @pytest.mark.slow
 def test_it_stands_in_the_tables():
     by_hand = extended_kalman(BOTH)
-    table = compare([SEEN], [by_hand, ekf(BOTH, noise_variance=1e-4)], START).set_index("observer")
+    table = compare([SEEN], [by_hand, ekf(BOTH, noise_variance=1e-4)], START).summary
     assert table.loc["by hand", "final"] == pytest.approx(table.loc["extended Kalman", "final"])
     for truth in (SEEN.truth, None):
         seen = [replace(SEEN, truth=truth), replace(SEEN.between(0, 1.5), truth=None if truth is None else truth[:151])]

@@ -6,7 +6,6 @@ from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
-import pandas as pd
 import pytest
 import sympy as sp
 from examples import BOTH
@@ -41,7 +40,7 @@ from percept_obs.points import PointsScenario, independent_points
 from percept_obs.points.scenarios import moving_body
 from percept_obs.recording import render
 from percept_obs.recording.path import varying_path
-from percept_obs.studies.comparison import compare, summary
+from percept_obs.studies.comparison import compare
 from percept_obs.system.motion import TIME, AreTheseDegrees
 from percept_obs.validation import TooMuchWork, WrongKind, checked, expression
 
@@ -127,7 +126,6 @@ test_what_has_no_sense_is_refused_in_a_sentence = refuses(
     (lambda: at_time(sp.sin(10**6 * TIME), 0, 0), "it changes too fast: slow it down"),
     (lambda: affine(np.eye(3), lambda: 1), "the motion's b .* must be a function of a time alone: too many"),
     (lambda: PointsForm(rigid(camera_angular_velocity=[0, 0, -1]), np.zeros((2, 3, 3))), "a block of C is 0"),
-    (lambda: summary(pd.DataFrame({"a": [1]})), "the table has no columns cost, .*; give one from compare"),
     (lambda: render(SHORT, 0), "0 frames of 160 pixels a side are none"),
     (lambda: render(SHORT, size=10**6), "pixels, from 11 frames of the size 1000000, "),
     (lambda: image_plane(SHORT, ax=5), "ax is the number 5; expected an Axes"),
