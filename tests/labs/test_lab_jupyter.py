@@ -104,6 +104,7 @@ def test_python_may_be_busy_set_the_settings_and_say_what_is_wrong(browser_page,
     page.wait_for_function(f"{FIRST}.shown.settings.seed === 5")
 
 
+@pytest.mark.night
 def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_page, folder, server):
     page = browser_page
     cells = [
@@ -191,6 +192,7 @@ PLAYED = f"() => !{FIRST}.screen.clock.playing && !{FIRST}.screen.clock.secret"
 SETTLED = f"() => {FIRST}.shown.runs[0].settling"
 
 
+@pytest.mark.night
 def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, folder):
     page = browser_page
     shutil.copy(NOTEBOOKS / "00_start.ipynb", folder)
@@ -231,6 +233,7 @@ def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, fol
     assert log_entries(page) == ""
 
 
+@pytest.mark.night
 def test_an_error_in_a_callback_reaches_the_log_console(browser_page, folder):
     page = browser_page
     write_notebook(folder, "failing.ipynb", FAILING + "slider")

@@ -75,6 +75,7 @@ def test_a_figure_can_be_made_anew(name):
 
 @pytest.mark.slow
 @pytest.mark.browser
+@pytest.mark.night
 def test_the_pictures_of_labs_can_be_made_anew(browser):
     for name, (make, expected) in LABS.items():
         text, size = shipped(name)

@@ -358,9 +358,10 @@ export class TimeChart extends View {
   }
 }
 
-/** Values of the lines that have a name at a time. */
+/** Values of the lines that have a name at a time; of a level line the axis tells it. */
 function readingAt(lines, time, unit) {
-  const told = lines.filter(({ text }) => text).map(({ text, time: times, values }) => {
+  const level = ({ values }) => values.every((value) => value === values[0]);
+  const told = lines.filter((line) => line.text && !level(line)).map(({ text, time: times, values }) => {
     const value = values[sampleAt(times, time)];
     return `${text} ${Number.isFinite(value) ? `${readable(value)}${unit && ` ${unit}`}` : "–"}`;
   });

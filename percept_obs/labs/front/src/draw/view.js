@@ -32,7 +32,7 @@ export class View extends LabelledPicture {
     if (!this.caption) return;
     const { width, height } = this;
     const right = this.caption.className === "right";
-    const wide = 7 * (this.caption.textContent ?? "").length + 16;
+    const wide = 8 * (this.caption.textContent ?? "").length + 16;
     this.taken.push(right ? [width - wide, height - 28, width, height] : [0, height - 28, wide, height]);
   }
 

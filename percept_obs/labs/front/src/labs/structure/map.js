@@ -105,7 +105,7 @@ function drawFigure(view, first, figure, scene) {
   const name = k === ESTIMATE ? "estimate" : first.nameOf(world);
   const metric = k === ESTIMATE || (k === RIGHT && !first.stories);
   const towards = [[-1, -0.5], [0, -1], [0, -1], [1, -0.6]][k];
-  const text = metric ? `${name} ${far} away` : name;
+  const text = metric ? `${name} ${far}` : name;
   view.tag({ id: `world ${k}`, text, at: top, colour, rank: [3, 1, 2, 0][k], gap, towards });
 }
 

@@ -88,7 +88,7 @@ export const SENTENCES = [
     when: ({ free, moved }) => free && moved,
     text: () => "A whole family of worlds makes this film: small, near, slow or large, far, fast.",
   },
-  { when: ({ free }) => free, text: () => "The film cannot tell which. Tick a speed." },
+  { when: ({ free }) => free, text: () => "The film cannot tell. Tick a speed." },
   DIVERGED,
   {
     when: ({ why, known }) => why === NEARLY && known.size,
