@@ -51,7 +51,13 @@ def mathml(latex: str, display: str) -> str:
     from latex2mathml.converter import convert
 
     plain = latex.replace(r"\displaystyle", "").strip().strip("$")
-    return str(convert(plain, display=display))
+    rows = plain.replace("{aligned}", "{split}")  # the converter knows only the second name
+    return str(convert(rows, display=display))
+
+
+def displayed(latex: str) -> str:
+    """Return a formula as MathML in a block of its own, which keys scroll where it is wider than the page."""
+    return f'<div class="math" tabindex="0" role="group" aria-label="formula">{mathml(latex, "block")}</div>'
 
 
 def _inline(self: Any, node: Any) -> None:
@@ -59,8 +65,7 @@ def _inline(self: Any, node: Any) -> None:
 
 
 def _display(self: Any, node: Any) -> None:
-    formula = mathml(node.astext(), "block")
-    _write(self, f'<div class="math" tabindex="0" role="group" aria-label="formula">{formula}</div>')
+    _write(self, displayed(node.astext()))
 
 
 def _write(self: Any, text: str) -> None:

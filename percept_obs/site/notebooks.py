@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from percept_obs.figures.base import Figure
 from percept_obs.labs.shared.saved import ENDED, SHOWN, place_of
-from percept_obs.site.extension import mathml
+from percept_obs.site.extension import displayed
 
 if TYPE_CHECKING:
     import nbformat
@@ -150,7 +150,7 @@ def _last_shown(models: Mapping[str, Any], name: str) -> Iterator[str]:
         if "text/html" in data:
             yield "".join(data["text/html"])  # text, or a list of lines
         elif "text/latex" in data:
-            yield f"<p>{mathml(''.join(data['text/latex']), 'block')}</p>"
+            yield displayed("".join(data["text/latex"]))
         else:
             yield f"<pre>{escape(''.join(data.get('text/plain', output.get('text', ''))))}</pre>"
     for child in state.get("children", ()):

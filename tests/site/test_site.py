@@ -21,13 +21,13 @@ from places import NOTEBOOKS, SUPPORT
 from widths import WIDTHS, assert_fits
 
 import percept_obs
-from percept_obs import cli, site
+from percept_obs import PerspectiveSystem, affine, cli, ibo, pinhole, site
 from percept_obs.exercises import COPIES
 from percept_obs.exercises.models import notebooks
 from percept_obs.figures.base import Figure
 from percept_obs.labs.shared.saved import place_of
 from percept_obs.papers import NAMED
-from percept_obs.site.extension import _let_keys_scroll, mathml
+from percept_obs.site.extension import _let_keys_scroll, displayed, mathml
 from percept_obs.site.front_ends import TRIED
 from percept_obs.site.named import named
 from percept_obs.site.notebooks import NOT_RUN, drawing, not_run
@@ -391,6 +391,9 @@ def test_what_may_be_wider_than_the_page_is_scrolled_by_keys(wide):
 def test_a_formula_is_written_for_the_browser():
     pytest.importorskip("latex2mathml", reason='get it with: python -m pip install "percept-obs[site]"')
     assert mathml(r"$\displaystyle \frac{1}{y_3}$", "block").startswith("<math")
+    equations = displayed(ibo(PerspectiveSystem(affine(), pinhole()))._repr_latex_())
+    assert "<mtable" in equations
+    assert "<mi>&</mi>" not in equations, "the rows of several equations stand in one"
 
 
 def test_what_is_missing_is_named_with_the_command_that_gets_it(monkeypatch, capsys, tmp_path):
