@@ -145,6 +145,7 @@ def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_pa
     assert set(shown["settings"]["unknown"]) != set(before[1]["unknown"])
 
 
+@pytest.mark.night
 def test_a_restarted_kernel_leaves_the_lab_alive_and_one_that_has_ended_says_how_it_comes_back(browser_page, folder):
     page = browser_page
     open_lab(page, folder, "again.ipynb")

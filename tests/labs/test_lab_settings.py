@@ -105,8 +105,6 @@ def _rigid(motion):
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
-        ({}, "the integral of w wᵀ is at least 1.4"),
-        ({"scenario": "ma2005_eq36", "outputs": ["y1"]}, "the integral of w wᵀ is at least 2.8e-11"),
         ({"observers": ["extended_kalman"]}, "claims to know the inverse distance"),
         ({"outputs": ["y1"], "noise": NOISY}, "noise pushes the estimate of y2"),
         ({}, "a small error shrinks to"),

@@ -63,6 +63,7 @@ def test_a_pause_is_not_trusted_and_what_was_known_before_it_is():
 
 
 @pytest.mark.slow
+@pytest.mark.night
 def test_with_errors_of_the_poses_few_wrong_ones_are_trusted_and_most_right_ones_are():
     """400 runs with ALL_SAMPLES=1, of all observers and outputs; two deviations of chance are allowed."""
     found = [trusted_with(seed, poses) for poses in POSES for seed in range(200, 200 + sampled(8, 100))]
