@@ -327,6 +327,6 @@ if __name__ == "__main__":  # prints the largest deviations
             found = largest(partial(run_of, make, varying, form))
             print(*form.measured, scene(1.0, varying).name, make.key, f"{found:.1e}", flush=True)
     for measured in OUTPUTS:
-        for study in (consistent, bounded, *STUDIES):
+        for study in (consistent, bounded, tuned, *STUDIES):
             found = largest(partial(study, SYSTEMS[affine].partition(*measured)))
             print(*measured, study.__name__, f"{found:.1e}", flush=True)
