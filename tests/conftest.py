@@ -43,14 +43,14 @@ def pytest_itemcollected(item):
         item.add_marker(pytest.mark.skip(reason="takes the night: run it with ALL_SAMPLES=1"))
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_teardown(item, nextitem):
-    """Close the browser that tests share once the next one is of another room, or wants none."""
-    found = yield
-    wants = nextitem and nextitem.path.parent == item.path.parent and nextitem.path in IN_BROWSER
-    if not wants:
-        browsers.close()
-    return found
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    """Close the browser that tests share before one of another room, or one that wants none."""
+    browsers.enter(item.path.parent if item.path in IN_BROWSER else None)
+
+
+def pytest_sessionfinish():
+    browsers.close()
 
 
 def pytest_collection_modifyitems(items):

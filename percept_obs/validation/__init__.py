@@ -18,6 +18,7 @@ from percept_obs.validation.expressions import expression as expression
 from percept_obs.validation.expressions import expressions as expressions
 from percept_obs.validation.expressions import matrix as matrix
 from percept_obs.validation.expressions import refuse_names as refuse_names
+from percept_obs.validation.expressions import several as several
 from percept_obs.validation.kinds import Coefficients as Coefficients
 from percept_obs.validation.kinds import Entries as Entries
 from percept_obs.validation.kinds import Kind as Kind

@@ -48,7 +48,15 @@ def expressions(values: Iterable[Any], name: str) -> tuple[sp.Expr, ...]:
 
 def derived(values: Iterable[Any], name: str) -> tuple[sp.Basic, ...]:
     """Several values as sympy's, without a look into those that are sympy's already, which takes long."""
-    return tuple(value if isinstance(value, sp.Basic) else expression(value, name) for value in values)
+    each = several(values, name)
+    return tuple(value if isinstance(value, sp.Basic) else expression(value, name) for value in each)
+
+
+def several(values: Any, name: str) -> Iterable[Any]:
+    """Values that can be gone through as they are; `WrongKind` for a single one."""
+    if not isinstance(values, Iterable):
+        raise WrongKind(f"{name} is {described(values)}; give a sequence of numbers or sympy expressions")
+    return values
 
 
 def matrix(values: Any, name: str, rows: int | None = None, columns: int | None = None) -> sp.ImmutableMatrix:

@@ -46,6 +46,12 @@ def shared(chromium):
     return _kept["browser"]
 
 
+def enter(room):
+    """Close the browser unless tests of this room share it; a test that is tried again finds it open."""
+    if room is None or _kept.setdefault("room", room) != room:
+        close()
+
+
 def close():
     """End the browser of this process, beside which no other loop of asyncio can run."""
     _open.close()
