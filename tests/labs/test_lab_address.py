@@ -172,7 +172,7 @@ SETTINGS = "(which) => tests.settings(which)"
 def page(browser, tmp_path):
     """Shows pages of labs from the disk, without a network."""
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
-    page.set_default_timeout(10_000)
+    page.set_default_timeout(30_000)  # three labs on a busy machine
     complaints = []
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on("console", lambda said: complaints.append(said.text) if said.type in ("error", "warning") else None)
