@@ -81,6 +81,7 @@ BEHIND = {"range identification": 2, "integral sliding mode": 3}
 
 
 @pytest.mark.slow
+@pytest.mark.night
 def test_all_observers_in_one_table():
     """Samples are held, as a running system must; steps of 2 ms, for the cascade's gain is stiff at the start."""
     start, references = twice_the_median_depth(), ("truth", "stereo")
