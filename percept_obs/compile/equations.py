@@ -10,7 +10,7 @@ import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from percept_obs.compile.intermediate import definitions
-from percept_obs.validation import derived, refuse_names, set_fields, several, travels
+from percept_obs.validation import derived, iterable, refuse_names, set_fields, travels
 
 Symbols = tuple[sp.Symbol, ...]
 Expressions = tuple[sp.Expr, ...]
@@ -37,7 +37,7 @@ class Equations:
     def __post_init__(self) -> None:
         names = ("state", "flow", "measured", "parameters", "gains", "reset")
         set_fields(self, **{name: derived(getattr(self, name), f"the equations' {name}") for name in names})
-        set_fields(self, update=tuple(derived(block, "an update") for block in several(self.update, "update")))
+        set_fields(self, update=tuple(derived(block, "an update") for block in iterable(self.update, "update")))
         listed = (*self.state, *self.measured, *self.parameters, *self.gains)
         refuse_names(listed, "the equations")
         if len({symbol.name for symbol in listed}) != len(listed):

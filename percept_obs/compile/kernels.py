@@ -28,7 +28,7 @@ WORTH_COMPILING = 200_000
 """Number of steps that takes Python about as long as numba takes to compile and run them."""
 
 _ready: dict[Equations, bool] = {}
-"""Whether machine code of a loop is known to be there."""
+"""Equations whose loop was looked for as machine code, True where it was found or made."""
 
 
 def choose(language: Language | None, steps: float, equations: Equations | None = None) -> Language:

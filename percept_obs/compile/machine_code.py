@@ -14,14 +14,14 @@ from typing import Any, Literal
 
 from percept_obs.validation import warn, write_whole
 
-Rounding = Literal["exact", "inlined", "batch"]
+Way = Literal["exact", "inlined", "batch"]
 
-OPTIONS: dict[Rounding, dict[str, Any]] = {
+OPTIONS: dict[Way, dict[str, Any]] = {
     "exact": {"error_model": "numpy"},
     "inlined": {"error_model": "numpy"},
     "batch": {"error_model": "numpy", "fastmath": {"contract"}, "nogil": True},
 }
-"""Options of numba: rounding as in Python, also of functions inside the loop; a product and a sum rounded once."""
+"""Options of numba: rounding as in Python, twice, the second time with functions inlined; a b + c rounded once."""
 
 
 class NotKept(UserWarning):
@@ -30,7 +30,7 @@ class NotKept(UserWarning):
 
 # Not in another thread: numba sets Python's warning filters while it compiles, and all threads share them.
 @lru_cache(maxsize=512)
-def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Callable[..., Any]:
+def machine_code(text: str, signature: Any, way: Way = "exact") -> Callable[..., Any]:
     """Compile the last function of a text; it may call those before it.
 
     numba keeps machine code of files only.  So the text becomes a file in the user's cache or NUMBA_CACHE_DIR, named by
@@ -38,14 +38,14 @@ def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Cal
     """
     import numba
 
-    options, (text, file) = OPTIONS[rounding], _file(text, rounding)
+    options, (text, file) = OPTIONS[way], _file(text, way)
     folder = file.parent
 
     def compiled(place: str, kept: bool) -> Callable[..., Any]:
         module = sys.modules[file.stem] = ModuleType(file.stem)  # where numba looks for the code of a file
         exec(compile(text, place, "exec"), vars(module))
         *others, last = (name for name, value in vars(module).items() if isinstance(value, FunctionType))
-        inside = rounding != "exact"  # of the loop, for a call stops vector instructions
+        inside = way != "exact"  # of the loop, for a call stops vector instructions
         for name in others:
             setattr(module, name, numba.njit(forceinline=inside, **options)(getattr(module, name)))
         found: Callable[..., Any] = numba.njit([signature], cache=kept, **options)(getattr(module, last))
@@ -66,17 +66,17 @@ def machine_code(text: str, signature: Any, rounding: Rounding = "exact") -> Cal
         return found
 
 
-def is_kept(text: str, rounding: Rounding = "exact") -> bool:
+def is_kept(text: str, way: Way = "exact") -> bool:
     """Return True if machine code of a text is on the disk."""
-    _, file = _file(text, rounding)
+    _, file = _file(text, way)
     return any(file.parent.glob(f"*/{file.stem}.*.nbi"))
 
 
-def _file(text: str, rounding: Rounding) -> tuple[str, Path]:
+def _file(text: str, way: Way) -> tuple[str, Path]:
     """The whole text, and its file, which need not exist."""
     from platformdirs import user_cache_path
 
-    text = f'"""A loop of percept_obs, which numba compiles {rounding}, with {OPTIONS[rounding]}."""\n\n{text}'
+    text = f'"""A loop of percept_obs, which numba compiles {way}, with {OPTIONS[way]}."""\n\n{text}'
     folder = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("percept_obs"))
     return text, folder / f"loop_{hashlib.sha256(text.encode()).hexdigest()[:32]}.py"
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from percept_obs.compile import Array, Flags
-from percept_obs.recording.normal import Normal, less
+from percept_obs.recording.normal import NormalEquations, project_out
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.poses import Poses
 from percept_obs.validation import needed
@@ -35,7 +35,7 @@ left then is noise whatever the fault, since nothing but noise changes so much f
 
 @dataclass(frozen=True)
 class Limits:
-    """What is known of corners before a film is seen, and when a fit ends."""
+    """Numbers that are assumed of corners before a film is seen, and limits at which its fit ends."""
 
     jitter: float = 10.0  # pixels by which a stabilisation usually shifts one picture against its neighbours
     finest: float = 0.01  # pixels of noise that corners have at least: OpenCV finds none better
@@ -113,7 +113,7 @@ class Fit:
     The shutter `moved` the corners so far; their `speed` is in pixels a second.
     """
 
-    normals: tuple[Normal, Normal]
+    normals: tuple[NormalEquations, NormalEquations]
     noise: float
     left: float
     ratio: float
@@ -131,7 +131,7 @@ class Fit:
         """Standard deviations of chance by which they are there."""
         return self.ratio * math.sqrt(self.count / 2)
 
-    def normal(self, columns: Sequence[int]) -> Normal:
+    def normal(self, columns: Sequence[int]) -> NormalEquations:
         """Normal equations for some columns."""
         return self.normals[SINGLY in columns]
 
@@ -152,10 +152,10 @@ def _step(corners: Corners, state: State, columns: Sequence[int]) -> tuple[State
     (K, n), even = corners.seen.shape, corners.even
     rows, moved, speed = _rows(corners, state)
     used = (rows * state.used[..., None, None]).reshape(K, 2 * n, -1)
-    poses, shared = used[..., :POSE], less(used[..., POSE:], used[..., :POSE])
+    poses, shared = used[..., :POSE], project_out(used[..., POSE:], used[..., :POSE])
     A, y = shared[..., :-1], shared[..., -1:]
     free = np.maximum(2 * state.used.sum(axis=1) - POSE - ALONE, 0) * even
-    rest = less(y, A[..., :ALONE])[..., 0] * (free > 0)[:, None]
+    rest = project_out(y, A[..., :ALONE])[..., 0] * (free > 0)[:, None]
     noise = max(float((rest**2).sum() / free.sum()), LIMITS.finest**2)
     each = ((rest**2).sum(axis=1) + LIMITS.worth * noise) / (free + LIMITS.worth)
     weight = (even / each)[:, None, None]
@@ -180,7 +180,7 @@ def _step(corners: Corners, state: State, columns: Sequence[int]) -> tuple[State
     near = corners.seen & (size <= LIMITS.far * np.fmax(np.nanmedian(size), np.nanmedian(size, axis=1))[:, None])
     count = (ALONE - 2 * (SINGLY in columns)) * int(even.sum()) - len(values)
     after = y - A @ step  # of what is left, frames with a lens of their own would explain the difference
-    ratio = float(((after**2 - less(after, A[..., :ALONE]) ** 2) * weight).sum()) / count - 1
+    ratio = float(((after**2 - project_out(after, A[..., :ALONE]) ** 2) * weight).sum()) / count - 1
     rms = float(np.sqrt(np.mean(left[near] ** 2)))
     fit = Fit(normals, math.sqrt(noise), rms, ratio, count, moved, speed)
     moved_on = State(turn @ state.R, (turn @ state.p[..., None] + pose[:, 3:])[..., 0], own, near)
@@ -229,15 +229,15 @@ def _in_a_row(white: Array) -> float:
     return float(1 + 2 * products[1:end].sum() / max(products[0], np.finfo(float).tiny))
 
 
-def _normal(bases: Sequence[Array], M: Array, m: Array, more: float = 0.0) -> Normal:
+def _normal(bases: Sequence[Array], M: Array, m: Array, more: float = 0.0) -> NormalEquations:
     """Normal equations of the film from those of its frames, shapes (K, 18, 18) and (K, 18)."""
     owner = np.repeat(np.arange(len(bases)), [base.shape[1] for base in bases])
     matrix = np.block([[a.T @ (M[:, i, j, None] * b) for j, b in enumerate(bases)] for i, a in enumerate(bases)])
     score = np.concatenate([base.T @ m[:, [i]] for i, base in enumerate(bases)])
-    return Normal(owner, matrix, score, USUAL[owner], more)
+    return NormalEquations(owner, matrix, score, USUAL[owner], more)
 
 
-def _shifted(bases: Sequence[Array], M: Array, m: Array, inner: Array) -> Normal:
+def _shifted(bases: Sequence[Array], M: Array, m: Array, inner: Array) -> NormalEquations:
     """Normal equations without the shift of each single picture, of which `inner` is the covariance."""
     across, shift = M[:, :, 16:] @ inner, m[:, 16:, None]
     narrower = np.linalg.slogdet(inner / LIMITS.jitter**2)[1].sum()

@@ -17,7 +17,7 @@ FEWEST_CORNERS = 8
 
 @dataclass(frozen=True)
 class Limits:
-    """What corners must tell of a lens to be believed."""
+    """Limits that corners of the board must keep so that a lens found from them is believed."""
 
     alike: float = 1.5  # ratio of two poses' errors up to which either may be true: a small plane looks alike from both
     unsure: float = 0.01  # deviation of the principal point, over the picture's size, from which on the middle is taken

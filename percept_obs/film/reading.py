@@ -33,7 +33,7 @@ SPOILS = ("unknown", "focus", "stabilisation", "board", "lens", "noise")
 
 @dataclass(frozen=True)
 class Limits:
-    """What a film must be, and which points of it are taken."""
+    """Limits that a film must keep to be read, and those by which its points are chosen."""
 
     looked_at: int = 8  # pictures in which other boards are looked for, where this one is not seen
     shortest: float = 1.5  # seconds that a film lasts at least

@@ -35,7 +35,7 @@ MODELS = FRONT / "tests/models.json"
 
 
 def models() -> str:
-    """What Python hands to the page as each lab opens, as JSON."""
+    """Return as JSON the models that Python hands to the page when each lab opens."""
     labs = {"observer": observer_lab(), "points": points_lab(), "structure": structure_lab(), "desk": derivation_desk()}
     given = {
         name: {"model": {**lab.model, "written": lab.written}, "settings": lab.settings, "view": lab.view}

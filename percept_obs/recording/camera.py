@@ -16,7 +16,7 @@ from percept_obs.system.view import View
 from percept_obs.validation import checked, limit
 
 TOO_SHORT = "a duration of {duration} s holds no two samples {period} s apart; record longer"
-"""What is wrong with a recording of one sample, also in live labs."""
+"""Reason why a recording of one sample is refused, here and in live labs."""
 
 Seed = np.random.Generator | int
 

@@ -15,7 +15,7 @@ ROUNDING = 1e-6
 """Share of a column's norm below which what is left of it is rounding, for half of the digits are lost in squares."""
 
 
-def less(columns: Array, others: Array) -> Array:
+def project_out(columns: Array, others: Array) -> Array:
     """Return columns, shape (..., n, q), less what others explain of them; 0 where that is all but rounding."""
     size = np.linalg.norm(others, axis=-2, keepdims=True)
     basis, strength, _ = np.linalg.svd(others / np.where(size > 0, size, 1), full_matrices=False)
@@ -26,12 +26,12 @@ def less(columns: Array, others: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Normal:
+class NormalEquations:
     """Normal equations of q numbers, each with the cause that it belongs to, its `owner`.
 
-    What each picture or track has alone, a pose or a point, is eliminated already, see `less`.  The scores, shape
-    (q, B), are the derivatives by the numbers in B parts of the samples.  Before anything is seen a number is 0 with
-    its `usual` standard deviation.  `more` is what the eliminated unknowns add to the likelihood's logarithm.
+    What each picture or track has alone, a pose or a point, is eliminated already, see `project_out`.  The scores,
+    shape (q, B), are the derivatives by the numbers in B parts of the samples.  Before anything is seen a number is 0
+    with its `usual` standard deviation.  `more` is what the eliminated unknowns add to the likelihood's logarithm.
     """
 
     owner: NDArray[Any]

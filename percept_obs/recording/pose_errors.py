@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.recording.normal import less
+from percept_obs.recording.normal import project_out
 from percept_obs.recording.reckoning import reckon
 from percept_obs.system.motion import Motion
 from percept_obs.validation import travels
@@ -137,5 +137,5 @@ def _missed(turns: Array, position: Array, maps: Array, depth: float) -> tuple[A
     changes = onward @ np.column_stack([seen[0], *(seen[0, 2] * np.eye(3)[:2])])  # by ln Z, y1 and y2 of the start
     slopes = ((changes[:, :2] - image[:, :, None] * changes[:, 2:]) / moved[:, 2, None, None]).reshape(-1, 3)
     missed = (seen[:, :2] / seen[:, 2:] - image).ravel()
-    both = less(np.column_stack([slopes[:, 0], missed]), slopes[:, 1:])
+    both = project_out(np.column_stack([slopes[:, 0], missed]), slopes[:, 1:])
     return both[:, 0], both[:, 1]

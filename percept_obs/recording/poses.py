@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Limits:
-    """What poses must be, and how near to each other."""
+    """Limits of times, places and turns that poses must keep to give a motion."""
 
     unit: float = 0.01  # largest difference of a quaternion's length, or of R^T R, from 1: files are rounded
     longest_row: float = 1 / 120  # seconds between two rows of a path: a motion is linear between them

@@ -16,9 +16,9 @@ from percept_obs.validation.environment import write_whole as write_whole
 from percept_obs.validation.expressions import derived as derived
 from percept_obs.validation.expressions import expression as expression
 from percept_obs.validation.expressions import expressions as expressions
+from percept_obs.validation.expressions import iterable as iterable
 from percept_obs.validation.expressions import matrix as matrix
 from percept_obs.validation.expressions import refuse_names as refuse_names
-from percept_obs.validation.expressions import several as several
 from percept_obs.validation.kinds import Coefficients as Coefficients
 from percept_obs.validation.kinds import Entries as Entries
 from percept_obs.validation.kinds import Kind as Kind

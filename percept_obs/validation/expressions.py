@@ -48,11 +48,11 @@ def expressions(values: Iterable[Any], name: str) -> tuple[sp.Expr, ...]:
 
 def derived(values: Iterable[Any], name: str) -> tuple[sp.Basic, ...]:
     """Several values as sympy's, without a look into those that are sympy's already, which takes long."""
-    each = several(values, name)
+    each = iterable(values, name)
     return tuple(value if isinstance(value, sp.Basic) else expression(value, name) for value in each)
 
 
-def several(values: Any, name: str) -> Iterable[Any]:
+def iterable(values: Any, name: str) -> Iterable[Any]:
     """Values that can be gone through as they are; `WrongKind` for a single one."""
     if not isinstance(values, Iterable):
         raise WrongKind(f"{name} is {described(values)}; give a sequence of numbers or sympy expressions")

@@ -139,7 +139,7 @@ def test_the_picture_has_the_numbers_of_the_formulas(node):
 
 
 def falls(misses):
-    """Whether a line comes nearer with each of its terms; nothing typed misses by all."""
+    """Return True if a line comes nearer with each of its terms; nothing typed misses by all."""
     return all(after < before for before, after in pairwise([1, *misses]))
 
 

@@ -62,7 +62,7 @@ def recorded(scenario, surface, duration):
 
 @cache
 def partitioned(surface, outputs):
-    """What is known and hidden where these outputs of a surface are measured."""
+    """Return the canonical form of an affine motion on a surface, where these outputs are measured."""
     return PerspectiveSystem(MOTIONS["affine"], SURFACES[surface]).partition(*outputs.split("+"))
 
 

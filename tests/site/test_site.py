@@ -95,7 +95,7 @@ def _add_a_second_lab(notebook):
 
 
 def kind(page):
-    """What a page, a path below the site, is like: each text and each notebook is a kind of its own."""
+    """Return the kind of a page by its path below the site; each text and each notebook is a kind of its own."""
     folder, *rest = page.parts
     return (
         page if len(rest) < 2 and folder not in ("reference", "slides") else (folder, len(rest), page.stem == "index")

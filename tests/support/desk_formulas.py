@@ -63,6 +63,6 @@ def answers_of_the_page(node, *desks):
 
 
 def in_the_page(node, **task):
-    """What the page finds: of "lines" marks and mathematics, of "grown" lines how far each beginning misses."""
+    """Return the page's marks and mathematics of "lines", and by how much each beginning of "grown" lines misses."""
     texts = base64.b64encode(file_of("desk_lab").read_bytes()).decode()
     return run_script(node, FRONT / "tests/run_desk.js", {"texts": texts, **task})

@@ -1,4 +1,4 @@
-"""What some tests need, where it is found, and what is said where it is missing."""
+"""Finds programs that some tests need, and skips or fails a test that lacks one, with how to get it."""
 
 import os
 import shutil

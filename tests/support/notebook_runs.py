@@ -14,7 +14,7 @@ from places import NOTEBOOKS
 from percept_obs.recording.utias import UTIAS_CUT
 
 OPENED_BY = ("percept-obs", "jupyterlab", "numba")
-"""What every notebook may use; what else it needs, its first cell asks for."""
+"""Packages that every notebook may use; for others its first cell asks."""
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ Words = list[dict[str, str]]
 """A sentence in pieces of text and of MathML."""
 
 HINTS = ("Show the wrong line", "Mark the wrong term", "Say what is wrong", "Say in which step")
-"""What each hint does, as its button says it."""
+"""Labels of the button that gives the next hint, in the order of the hints."""
 MARKS = {
     Verdict.RIGHT: "right",
     Verdict.CONVENTION: "right",

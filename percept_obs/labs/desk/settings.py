@@ -33,7 +33,7 @@ SCHEMA = Schema(
 )
 
 LOOKS = Schema(more=Choice("", ("", "choices"), about="whether the drawer is open: choices, or empty"))
-"""What can be looked at."""
+"""Schema of the desk's view, which no answer depends on: its drawer, open or closed."""
 
 EXAMPLE: dict[str, Any] = {
     "step": 6,

@@ -91,7 +91,7 @@ def _rigid(drawn: _Draw) -> Motion:
 
 
 ROUNDS, DRAWS, SIDE = 8, 1000, np.linspace(-0.9, 0.9, 7)
-"""How often numbers are drawn, how many at once, and coordinates of the places in the image where motions are."""
+"""Number of rounds of drawing, of systems in a round, and image coordinates at which their motions are compared."""
 
 
 @lru_cache(maxsize=64)

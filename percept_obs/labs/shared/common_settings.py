@@ -12,7 +12,7 @@ from percept_obs.observers import Observer
 from percept_obs.recording import Recording
 
 AT_LEAST = "at least from one sample to the next"
-"""How long a window is, whatever is asked for, as window_in() has it in Python and windowIn() in the page."""
+"""Words for the least length of a window, to which window_in() in Python and windowIn() in the page widen it."""
 
 
 def window_in(recording: Recording, asked: float) -> float:
@@ -29,7 +29,7 @@ def window_in(recording: Recording, asked: float) -> float:
 
 
 def offering(kind: Kind, names: Iterable[str]) -> Kind:
-    """The same choice, with other names to choose from."""
+    """Return a kind of setting like this one, which offers other names."""
     assert isinstance(kind, Choice | Names)
     return replace(kind, names=tuple(names))
 

@@ -48,7 +48,7 @@ TYPED = ("motion", "P", "P0")
 """The settings that are expressions of time."""
 
 LEAVES = "the point leaves the half-space in front of the camera at once"
-"""What is wrong with a point that is seen in one sample only, also in the page."""
+"""Reason why a point that is seen in one sample only is refused, here and in the page."""
 
 OF_ONE_POINT = {**for_the_page(), "judged": DISTANCE, "remedy": REMEDY, "leaves": LEAVES}
 """Sentences and numbers of verdicts for the pages of one point."""
@@ -110,7 +110,7 @@ class Lab(anywidget.AnyWidget):
     blocks: Blocks = MappingProxyType({})
     """Vectors and matrices that may vary over time, by their letters."""
     looks: Schema = Schema()
-    """What can be looked at."""
+    """Schema of the view, which no run depends on: the drawer's open group, charts, the part of the time."""
     from_the_page: tuple[str, ...] = ("view", "settings", "summary")
     """Traits that the page may set."""
     view: Any = _Checked({}, help="What of it is looked at.").tag(sync=True)

@@ -16,7 +16,7 @@ from percept_obs.system.motion import Motion
 
 
 def point_for_the_page(motion: Motion) -> Texts:
-    """How a point moves: the numbers of A and b, and the loop that moves it."""
+    """Return the printed functions by which the page moves a point: the numbers of A and b, and the loop."""
     return {
         "rates": function_source(motion.parameters, tuple(motion.A.row_join(motion.b))),
         "plant": source(point_in_motion(motion.A, motion.b, motion.parameters), "javascript"),

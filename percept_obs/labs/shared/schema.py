@@ -19,7 +19,7 @@ from percept_obs.observers import Observer
 Settings = dict[str, Any]
 
 UNREAD = ("opening", "about", "reason", "partial", "longest", "observer")
-"""What Python knows of a kind, and the page does not read of it."""
+"""Fields of a kind of setting that only Python reads; the page is not sent them."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.recording.normal import Normal, less
+from percept_obs.recording.normal import NormalEquations, project_out
 from percept_obs.studies.diagnosis.causes import CAUSES
 from percept_obs.studies.diagnosis.tracks import Track, across_of, guess, seen
 
@@ -48,7 +48,7 @@ class Fit:
 
     @cached_property
     def residuals(self) -> list[Array]:
-        """What is left of each track's samples, shape (K, m), NaN where a value is not used."""
+        """Residuals of each track's samples after the fit, shape (K, m), NaN where a value is not used."""
         pairs = zip(self.tracks, self.points, strict=True)
         images = ((track, seen(track, point, self.mix_up, self.wrong).outputs) for track, point in pairs)
         return [np.where(track.used, image - track.outputs, np.nan) for track, image in images]
@@ -107,20 +107,20 @@ class Fit:
         normal = self._normal([*dict.fromkeys([*self.wrong, *keys])])
         return {key: self._estimate(normal, key) for key in keys}
 
-    def _normal(self, keys: Sequence[str]) -> Normal:
+    def _normal(self, keys: Sequence[str]) -> NormalEquations:
         """Normal equations of some causes' numbers, with the scores of each tenth of the recordings."""
         rows, times = [], []
         for track, point in zip(self.tracks, self.points, strict=True):
             model = seen(track, point, self.mix_up, self.wrong, keys)
-            rows.append(less(model.by_cause[track.used], model.by_point[track.used] @ across_of(point, 4)))
+            rows.append(project_out(model.by_cause[track.used], model.by_point[track.used] @ across_of(point, 4)))
             times.append(np.broadcast_to(track.time[:, None], track.used.shape)[track.used])
         columns, time = np.concatenate(rows), np.concatenate(times)
         block = np.searchsorted(np.quantile(time, np.arange(1, BLOCKS) / BLOCKS), time)
         scores = columns.T @ (self.values[:, None] * (block[:, None] == np.arange(BLOCKS)))
         owner = np.repeat(keys, [CAUSES[key].size for key in keys])
-        return Normal(owner, columns.T @ columns, scores, np.full(len(owner), np.inf))
+        return NormalEquations(owner, columns.T @ columns, scores, np.full(len(owner), np.inf))
 
-    def _estimate(self, normal: Normal, key: str) -> Estimate:
+    def _estimate(self, normal: NormalEquations, key: str) -> Estimate:
         """Estimate of one cause's number; clusters are blocks of time (Liang and Zeger)."""
         chosen, steps, covariance = normal.solved([*self.wrong, key])
         own, spread = normal.owner[chosen] == key, max(self.rms, FINEST)
