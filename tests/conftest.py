@@ -43,6 +43,22 @@ def pytest_itemcollected(item):
         item.add_marker(pytest.mark.skip(reason="takes the night: run it with ALL_SAMPLES=1"))
 
 
+APART = ("tests/notebooks/test_notebooks.py::test_it_runs_with_what_it_asks_for",)
+"""How the names of tests begin that take long and share nothing: each goes to whichever process is free."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Give a file's tests to one process, in which its labs open once, but spread what is `APART`."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class Rooms(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            return nodeid if nodeid.startswith(APART) else super()._split_scope(nodeid)
+
+    return Rooms(config, log)
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item):
     """Close the browser that tests share before one of another room, or one that wants none."""
