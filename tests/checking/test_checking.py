@@ -31,6 +31,7 @@ def test_equivalent_forms_are_accepted():
     assert accepted(range(300, 330), few_cases()) == []
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_many_equivalent_forms_are_accepted():
     assert accepted(range(FORMS), cases()) == []

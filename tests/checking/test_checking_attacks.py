@@ -19,6 +19,7 @@ def test_there_are_two_hundred_of_each():
     assert min(len(list(attacks())), len(list(hostile()))) >= 200
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_what_is_nearly_the_same_is_not_called_right():
     found = [(family, str(one), str(other)) for family, one, other in attacks() if check(one, other).right]

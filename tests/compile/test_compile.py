@@ -208,6 +208,7 @@ compiled = [sum(loop.stats.cache_misses.values()) for loop in loops]
 """
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_another_process_compiles_nothing():
     """Whatever the order of sets in it, it prints the same text and finds its machine code."""

@@ -109,6 +109,7 @@ def test_the_points_are_opencv_s(board):
     assert board.points == pytest.approx(board.charuco.getChessboardCorners(), abs=1e-8)
 
 
+@pytest.mark.night
 @pytest.mark.parametrize("name", ["DICT_5X5_100", "DICT_APRILTAG_36h11"])
 def test_a_board_of_other_markers_is_named(name):
     board = cv2.aruco.CharucoBoard((7, 5), 0.036, 0.027, cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, name)))

@@ -23,6 +23,7 @@ def made(tmp_path_factory):
     return path, draw(path)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_it_is_drawn_by_the_renderer_and_small(made):
     (time, shipped), (again, drawn) = shots(example_film()), shots(made[0])
@@ -47,6 +48,7 @@ def test_it_shows_the_board_and_the_camera_is_found(made):
     assert film.camera.focal[0] == pytest.approx(540, rel=3 * film.focal_deviation)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize(("kind", "least", "most"), [("sideways", 0.75, 1.0), ("turn", 0.0, 0.2)])
 def test_moving_sideways_is_trusted_and_turning_is_not(kind, least, most, tmp_path):

@@ -63,6 +63,7 @@ def test_distances_are_found(filmed, board, median, most):
     assert np.quantile(found, 0.9) < most
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_what_is_claimed_holds(filmed):
     film, _ = filmed
@@ -94,6 +95,7 @@ def test_a_film_is_read_once(filmed, cache, monkeypatch):
         read_film(film.video.path)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_distances_are_drawn_in(filmed, tmp_path):
     film, truth = filmed
@@ -108,6 +110,7 @@ def test_distances_are_drawn_in(filmed, tmp_path):
     assert blue > red + 60
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_known_poses_need_no_board(cache, tmp_path):
     path, truth = quick_film(3, tmp_path, duration=4.0, boards=0)
@@ -120,6 +123,7 @@ def test_known_poses_need_no_board(cache, tmp_path):
     assert np.median(errors(film, truth, board=False)) < 0.05
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_a_film_that_was_held_upright_stands_upright(cache, tmp_path):
     path, truth = quick_film(5, tmp_path, size=(360, 640), upside_down=True, uneven=0.4)
@@ -129,6 +133,7 @@ def test_a_film_that_was_held_upright_stands_upright(cache, tmp_path):
     assert film.frames.extent[2] > film.frames.extent[3]
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_the_command_writes_a_page(filmed, cache, tmp_path, capsys):
     film, _ = filmed

@@ -37,6 +37,7 @@ def test_derivatives_by_every_column_are_those_of_differences():
         np.testing.assert_allclose(rows[..., 6 + column], by, atol=1e-4 * np.abs(by).max(), err_msg=str(column))
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_a_clean_film_is_accused_of_nothing():
     """Two hundred with ALL_SAMPLES=1, half of them with noise that is correlated over pictures."""
@@ -55,6 +56,7 @@ def test_a_fault_is_found_by_name(fault):
         assert named == wanted or ("unknown" in named and "stabilised" in fault), (seed, named)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_the_time_of_read_out_is_within_its_deviations():
     """Forty films with ALL_SAMPLES=1."""
@@ -156,6 +158,7 @@ def test_a_film_of_a_few_pictures_is_refused():
         find_faults(film.time, np.nan_to_num(film.pixels), BOARD, film.size, camera, poses)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("fault", "wanted"),

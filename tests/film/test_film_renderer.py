@@ -56,6 +56,7 @@ def test_nearest_sheets_are_seen():
     assert len(seen) > 8
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize(("size", "faults"), [((640, 360), {}), ((640, 360), TELEPHONE), ((360, 640), TELEPHONE)])
 def test_board_is_found_in_a_film_where_the_truth_says(tmp_path, size, faults):

@@ -32,6 +32,7 @@ def marks(node, texts):
     return [line["mark"] if line["read"] else "unread" for line in found]
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_python_and_the_page_judge_plain_lines_alike_and_no_wrong_one_is_right(node):
     chosen = list(lines(sampled(160, 10_000), seed=26))
@@ -165,6 +166,7 @@ def typed(name, row, terms):
     return name, row, " + ".join(f"({plain(term)})" for term in terms), [0, 0, INVERSE]
 
 
+@pytest.mark.night
 def test_every_true_line_comes_nearer_with_each_term_and_jumps_away_at_each_turned_sign(node):
     true = list(image_lines())
     turned = [(k, typed(*of, [*terms[:k], -terms[k]])) for *of, terms in true for k in range(len(terms))]

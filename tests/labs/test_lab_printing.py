@@ -18,6 +18,7 @@ MAKERS = {
 }
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", printing.LABS)
 def test_what_is_shipped_is_what_the_package_prints(kind):

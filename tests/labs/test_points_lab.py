@@ -51,6 +51,7 @@ def test_page_python_and_the_copied_code_agree_to_1e_9(answers, runs, case):
         np.testing.assert_allclose(copied.state, run.state, rtol=0, atol=1e-9)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.node
 def test_random_settings_agree(lab, node):

@@ -58,6 +58,7 @@ def test_the_bound_is_smaller_for_a_camera_that_looks_where_it_goes():
     assert np.median(found) < 4
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_in_any_direction_there_is_less_to_gain():
     """Most directions are sideways already; there 1.1 is had, and the best straight path gives 1.3."""

@@ -146,6 +146,7 @@ def test_dixons_observer_started_at_the_truth_stays_near(scenario):
     assert np.abs(run.innovation).max() < 0.05
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @each(["linear_approximation"])
 @given(scenario=motions())

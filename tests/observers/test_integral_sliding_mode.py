@@ -181,6 +181,7 @@ def test_the_sign_chatters_by_gamma_squared_c_times_the_step():
 VARYING = ("V.A", "VI.A")
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("angular_velocity", [(0.0, 0.0, 0.0), (0.1, -0.2, 0.3)], ids=["w = 0", "w"])
 @pytest.mark.parametrize("section", [*VARYING, "IV.A", "IV.B", "V.B", "VI.B", "VI.C"])
@@ -202,6 +203,7 @@ def ranges(run):
     return run.distance * run.recording.view.inverse(run.truth)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("switch", ["ideal", LAYER])
 @pytest.mark.parametrize(

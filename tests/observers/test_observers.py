@@ -82,6 +82,7 @@ def test_what_an_observer_needs_can_be_asked_and_is_told_when_it_is_made_anyway(
             make(ON_SPHERE.partition("y1"))
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize(("make", "form"), [*(p for p in PAIRS if p.values[0] not in WITHOUT_DYNAMICS), (ekf, SQUARE)])
 def test_error_dynamics_against_a_finite_difference(make, form):

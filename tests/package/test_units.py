@@ -227,6 +227,7 @@ def test_a_filter_and_its_bound_obey_the_law(study, measured):
     assert largest(partial(study, SYSTEMS[affine].partition(*measured))) < 1e-9
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("section", ["IV.A", "IV.B", "VI.C"])
 @pytest.mark.parametrize("make", [ekf, ibo, ismo], ids=lambda make: make.key)

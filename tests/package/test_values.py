@@ -150,6 +150,7 @@ def test_it_is_equal_here_and_so_is_all_that_it_computes(way):
     assert {name: why for name, why in wrong.items() if why} == {}
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_it_is_equal_in_another_process_and_so_is_all_that_it_computes():
     wrong = {}
@@ -185,6 +186,7 @@ def test_a_function_without_a_name_copies_and_pickle_says_that_it_cannot():
         pickle.dumps(motion)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_recordings_are_followed_in_processes():
     recordings = [po.record(po.scenarios.ma2005_eq35(), 2, NOISY, seed) for seed in range(3)]

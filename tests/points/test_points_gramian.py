@@ -30,6 +30,7 @@ def test_the_smallest_eigenvalue(points, at_start, least, when):
     assert "(14) holds" in found.verdict()
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("points", [1, 2])
 def test_the_decay_rates(points):

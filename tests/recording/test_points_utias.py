@@ -70,6 +70,7 @@ def test_the_landmarks_are_those_of_the_tracks():
     np.testing.assert_allclose(recording.distances["stereo"][at, point], first.distances["stereo"][0])
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("absence", [np.inf, OUT_OF_SIGHT], ids=["remembered", "forgotten out of sight"])
 def test_one_state_of_all_landmarks(absence):

@@ -26,6 +26,7 @@ def walk(shake):
     return form, record(PointsScenario("walk", form, START, 12), camera=Camera(0.02, Gaussian(1e-3)), seed=1)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_the_start_of_p_follows_from_noise_and_spread_and_a_large_one_holds_on():
     form, recording = walk(2.0)
@@ -36,6 +37,7 @@ def test_the_start_of_p_follows_from_noise_and_spread_and_a_large_one_holds_on()
     assert chosen < 0.01 < 0.05 < stiff
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("accelerates", [True, False])
 def test_a_filter_claims_a_range_only_after_the_own_ship_accelerated(accelerates):
@@ -92,6 +94,7 @@ def in_millimetres(scene):
     return StateScenario("mm", view, next(motions), state, scene.duration, next(motions), biases, unit=1000.0)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_millimetres_change_nothing_relative():
     scene, errors = scenarios.held_phone(seed=1), []

@@ -48,6 +48,7 @@ def reported(settings, after, hold="zero"):
     return [follow(recording, chosen) for recording in recordings()[1::2]]
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("reference", ["truth", "stereo"])
 @pytest.mark.parametrize(("hold", "median"), [("first", 0.08), ("zero", 0.12)])

@@ -44,6 +44,7 @@ FROM_PYPI = {"ipython-pygments-lexers", "psygnal"}
 FIRST, *FURTHER = sorted(notebooks())
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("extra", [[], ["data"]], ids=str)
 def test_a_course_runs_without_threads_processes_and_other_extras(tmp_path, extra):

@@ -21,6 +21,7 @@ def exact():
     return scale_spread()
 
 
+@pytest.mark.night
 def test_scatter_with_an_exact_inverse_depth(exact):
     """Chatter-free observers pass on noise in proportion; filters trade it against how fast they follow."""
     layer = spread_of(exact, "ISMO, boundary layer")
@@ -39,6 +40,7 @@ def test_scatter_with_an_exact_inverse_depth(exact):
     assert not exact.missing.any()
 
 
+@pytest.mark.night
 def test_scatter_with_the_inverse_depth_of_a_homography(exact):
     table = scale_spread((100.0, 40.0), depth=PatchDepth(grid_patch(0.4, 5)))
     for name in ("ISMO, boundary layer", "ISMO, ideal switch", "EKF", "Kalman filter, linear view"):

@@ -46,6 +46,7 @@ def test_a_sign_in_the_rate_chatters_in_proportion_to_the_step():
     assert 0.8 < order(errors(sliding_mode, "sign", adaptation=0), "y3") < 1.2
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("gamma", [20, 40])
 def test_a_sign_in_the_rate_of_the_rate_chatters_in_proportion_to_the_root_of_the_step(gamma):
@@ -62,6 +63,7 @@ def test_chatter_is_proportional_to_the_switching_gain():
     assert np.exp(np.mean(np.log(ratios))) == pytest.approx(2, rel=0.2)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("make", [range_identification, sliding_mode], ids=["Dixon", "sliding mode"])

@@ -23,6 +23,7 @@ def filtered(form, recording=RECORDING, variance=SIGMA**2, **start):
     return track(recording, observer, {**known, **start}, language="python")
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("form", [ONE, BOTH], ids=["y1", "y1+y2"])
 def test_a_right_claim_passes_in_about_95_of_100_recordings(form):

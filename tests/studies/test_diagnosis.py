@@ -90,6 +90,7 @@ def test_nothing_is_said_of_clean_recordings(seed):
     assert found.explained
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_mistakes_are_named_or_the_motion_cannot_tell():
     """Twenty recordings with each mistake and 200 clean ones with ALL_SAMPLES=1."""
@@ -102,6 +103,7 @@ def test_mistakes_are_named_or_the_motion_cannot_tell():
         assert not diagnosed(clean(seed)).findings, seed
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_of_two_mistakes_both_are_named_or_something_is_left():
     """Sixty pairs with ALL_SAMPLES=1."""

@@ -325,6 +325,7 @@ def alone():
     return ensemble(EQ35, ibo(BOTH), **SETTINGS)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 def test_a_killed_worker_costs_time_only(xr, alone, tmp_path):
@@ -347,6 +348,7 @@ def test_a_killed_worker_costs_time_only(xr, alone, tmp_path):
     xr.testing.assert_identical(found, alone)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_a_killed_ensemble_goes_on_where_it_was(xr, alone, tmp_path):
     import zarr

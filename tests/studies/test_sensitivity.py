@@ -32,6 +32,7 @@ def slope(recording, observer, start, entry, change=2e-4):
     return (4 * difference(change / 2) - difference(change)) / 3
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("form", [BOTH, ONE], ids=START)
 @pytest.mark.parametrize("make", MAKERS, ids=lambda make: make.key)

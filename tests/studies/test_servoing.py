@@ -82,6 +82,7 @@ def test_a_point_that_leaves_the_image_is_lost():
     assert not found.velocity[0, -1].any()
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_of_many_starts():
     depths = {"true": "true", "constant": "constant", "observed": FILTER}

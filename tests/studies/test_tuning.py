@@ -82,6 +82,7 @@ GRID = grid(
 """Gains that are searched by the median error; they include the right ones."""
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize(("form", "make"), SCENES[: sampled(1, None)], ids=lambda one: getattr(one, "__name__", ""))
 def test_claims_hold_and_errors_are_hardly_larger_than_those_of_tuning_by_error(form, make):
@@ -116,6 +117,7 @@ def claims(choosing, reporting, follow, start_variance):
     ]
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_noise_of_the_velocities_explains_innovations_and_errors_with_noisy_poses():
     """Each recording has another noise of its poses, so that no setting is right for all."""
@@ -131,6 +133,7 @@ def test_noise_of_the_velocities_explains_innovations_and_errors_with_noisy_pose
     assert 0.5 < nees < 2
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_noise_of_the_velocities_explains_innovations_and_errors_on_real_tracks():
     tracks = load_utias(UTIAS_CUT)

@@ -44,6 +44,7 @@ MOVING = ROOT / ".github/observer_lab.gif"
 
 COLOURS = 64  # in a picture: curves and letters need no more, and the file is a quarter as large
 SCREEN = (1100, 570)
+MOVING_SCREEN = (1100, 470)
 FRAMES = 41  # of the moving picture, ten a second
 
 
@@ -77,7 +78,7 @@ LABS = {
         "The lab of one point. On the left what the camera sees: the point, how it moves and how its estimate "
         "expects it to, and the focus of expansion in a hatched circle. On the right the world from above, with the "
         "point and its estimate on one ray. Below, the two distances over 4 s, which agree within 10 % from 2.3 s "
-        "on. One sentence and three questions stand above.",
+        "on. One sentence stands above.",
     ),
     "structure_lab": (
         structure_lab,
@@ -94,7 +95,11 @@ LABS = {
 }
 """Labs of the gallery, with what their pictures show."""
 
-PLAYS = f"{LABS['observer_lab'][1]} The picture plays these 4 s once."
+PLAYS = f"{LABS['observer_lab'][1]} The picture plays these 4 s again and again."
+WITHOUT_CONTROLS = ".percept-lab :is(button, .handy, .strip) { display: none }"
+"""A picture cannot be pressed, so it shows nothing to press."""
+REST = 3000
+"""Milliseconds that the last of the images stays."""
 
 SHOW = """(share) => {
     const [{ screen: { clock } }] = window.perceptObsLabs;
@@ -214,7 +219,8 @@ def moving_picture(browser, count=FRAMES):
     from lab_alone import DRAWN
 
     images = []
-    with first_screen(browser, observer_lab(), SCREEN, color_scheme="light") as page:
+    with first_screen(browser, observer_lab(), MOVING_SCREEN, color_scheme="light") as page:
+        page.add_style_tag(content=WITHOUT_CONTROLS)
         for k in range(count):
             page.evaluate(SHOW, k / (count - 1))
             page.wait_for_function(DRAWN)
@@ -224,10 +230,11 @@ def moving_picture(browser, count=FRAMES):
 
 
 def save_moving(path, images):
-    """Write images as one that plays once and rests at its end, for what moves on and on keeps from reading."""
+    """Write images as one that plays again and again, and rests at its end each time."""
     colours = few(Image.fromarray(np.vstack([images[0], images[-1]])))  # the same in all, or what rests would flicker
     first, *rest = (image.quantize(palette=colours, dither=Image.Dither.NONE) for image in images)
-    first.save(path, save_all=True, append_images=rest, duration=100, optimize=True)
+    durations = [100] * len(rest) + [REST]
+    first.save(path, save_all=True, append_images=rest, duration=durations, loop=0, optimize=True)
 
 
 def picture_of_lab(browser, make):

@@ -50,6 +50,7 @@ MOTIONS = dict(
 )
 
 
+@pytest.mark.night
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 def test_the_distance_of_a_point_is_right_to_a_percent(motion):
     for X, Y, Z in IMAGES[:3].swapaxes(1, 2):
@@ -67,6 +68,7 @@ def body(velocity, turning, times=None):
     return rigid_body(3, turning, velocity, times=times)
 
 
+@pytest.mark.night
 @pytest.mark.parametrize("form", [*both(independent), *both(body)])
 def test_many_points_move_as_they_are_seen_to(form):
     places = IMAGES[:3, 0]

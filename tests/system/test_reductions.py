@@ -49,6 +49,7 @@ def stepped(observer, start, samples, period, finer=1):
     return trace.states[::finer]
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @each_form
 @pytest.mark.parametrize("switch", ["fraction", "hyperbolic tangent"])

@@ -72,6 +72,7 @@ def test_with_errors_of_the_poses_few_wrong_ones_are_trusted_and_most_right_ones
         assert share <= most + 2 * np.sqrt(most * (1 - most) / count)
 
 
+@pytest.mark.night
 @pytest.mark.slow
 def test_on_real_tracks_few_wrong_ones_are_trusted():
     start = {"y3": 1 / 1.8}

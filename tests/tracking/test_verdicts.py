@@ -144,6 +144,7 @@ def test_points_are_judged_where_they_are_and_structure_by_all_that_is_sought():
     assert run.view.judged == "the distance, v_c2, v_c3"
 
 
+@pytest.mark.night
 @settings(max_examples=sampled(5, 20), suppress_health_check=list(HealthCheck))
 @pytest.mark.slow
 @given(
