@@ -70,11 +70,12 @@ def pytest_sessionfinish():
 
 
 def pytest_collection_modifyitems(items):
-    """Skip by day what runs at night.  Files that take long come first: a browser, the notebooks, many slow tests."""
+    """Let files come first that take long: the notebooks, the site, which waits for them, a browser, many slow tests."""
     tests = Counter(item.path for item in items)
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     IN_BROWSER.update(item.path for item in items if item.get_closest_marker("browser"))
-    rank = {path: (path not in IN_BROWSER, path.stem != "test_notebooks", -slow[path], -tests[path]) for path in tests}
+    first = {"test_notebooks": 0, "test_site": 1}
+    rank = {path: (first.get(path.stem, 2), path not in IN_BROWSER, -slow[path], -tests[path]) for path in tests}
     items.sort(key=lambda item: rank[item.path])
 
 

@@ -16,9 +16,6 @@ from percept_obs.studies.sensitivity import misbelieved, sensitivity
 RECORDING = record(scenarios.ma2005_eq35(), sampled(0.5, 1.5), replace(NOISY, noise=Uniform(0.002)), seed=1)
 START = {"y1+y2": {"y3": 0.3}, "y1": {"y2": 1.0, "y3": 0.3}}
 RIGID = PerspectiveSystem(rigid(), pinhole()).measure("y1", "y2")
-ENTRIES = sampled(("a12", "b3"), None)
-# The equivariant filter's equations are so long that it takes twice as long as all others together.
-MAKERS = sampled([make for make in OBSERVERS if make.key != "equivariant_filter"], OBSERVERS)
 
 
 def slope(recording, observer, start, entry, change=2e-4):
@@ -35,7 +32,7 @@ def slope(recording, observer, start, entry, change=2e-4):
 @pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("form", [BOTH, ONE], ids=START)
-@pytest.mark.parametrize("make", MAKERS, ids=lambda make: make.key)
+@pytest.mark.parametrize("make", OBSERVERS, ids=lambda make: make.key)
 def test_it_is_the_derivative_of_every_smooth_observer(make, form):
     """The integral sliding mode and the range identification observer are smooth by the layer that they have."""
     if make.refusal(form):
@@ -44,7 +41,7 @@ def test_it_is_the_derivative_of_every_smooth_observer(make, form):
         return
     start = START["+".join(form.measured)]
     observer = make(form, iterates=2) if make.key == "linear_approximation" else make(form)
-    found = sensitivity(RECORDING, observer, start, ENTRIES)
+    found = sensitivity(RECORDING, observer, start)
     assert not len(found.run.resets)
     for k, entry in enumerate(found.entries):
         expected = slope(RECORDING, observer, start, entry)
