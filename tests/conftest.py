@@ -70,7 +70,7 @@ def pytest_sessionfinish():
 
 
 def pytest_collection_modifyitems(items):
-    """Let files come first that take long: the notebooks, the site, which waits for them, a browser, many slow tests."""
+    """Let files come first that take long: the notebooks, the site, which waits for them, browsers, many slow tests."""
     tests = Counter(item.path for item in items)
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     IN_BROWSER.update(item.path for item in items if item.get_closest_marker("browser"))
