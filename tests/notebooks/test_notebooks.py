@@ -80,6 +80,7 @@ def test_it_runs_with_the_whole_recording_too(name, tmp_path):
     assert silent_pictures(one.notebook, one.widgets) == []
 
 
+@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in NAMES if asked(read(name))])
 def test_a_missing_module_is_one_sentence_and_no_other_cell_runs(name, tmp_path):
