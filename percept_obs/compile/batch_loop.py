@@ -7,27 +7,23 @@ trajectory is kept.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from percept_obs.compile.equations import Equations, Expressions, Symbols
-from percept_obs.compile.integrator import EACH, LARGEST_SQUARED_STATE, PLACES
-from percept_obs.compile.kernels import Language, beginning
-from percept_obs.compile.loop import Formulas, take_out
-from percept_obs.compile.text import Text, refuse_what_differs
+from percept_obs.compile.integrator import EACH, PLACES
+from percept_obs.compile.kernels import Language
+from percept_obs.compile.loop import SMALL, Loop, numbered, renamed, take_out
+from percept_obs.compile.many_runs import ManyRuns
 
 BATCH = 16
 """Runs that numba's loop takes together: two or four of a processor's vectors, whose latencies then overlap."""
-
-ARGUMENTS = (
-    *("start", "first", "gains", "moves", "noise", "truth", "known", "which", "lengths", "arriving", "held", "elapsed"),
-    *("reach", "tolerance", "late", "result"),
-)
 
 COLUMNS = ("outside", "judged", "final", "squares", "worst", "resets", "diverged", "nearest", "drop")
 """Columns of the result, before two, sum and number, for each of the means of `Statistics`."""
@@ -74,294 +70,193 @@ class BatchLoop(NamedTuple):
 
 @lru_cache(maxsize=128)
 def batch_source(loop: BatchLoop, language: Language) -> str:
-    """Text of a function of `ARGUMENTS`, described in `percept_obs.compile.batch`, that fills `result`.
+    """Text of a function of the arguments that `percept_obs.compile.batch` describes; it fills `result`.
 
     It is for `BATCH` runs in machine code, or for any number of them as arrays of numpy.
     """
-    return f"{beginning(language)}\n\n{_Writer(loop, language == 'numba').written()}"
+    return _ManyRuns(ManyRuns(language, str(BATCH)), loop).written()
 
 
-class _Writer:
-    """Writes the loop.  Local variables hold one run's numbers; rows of `work` keep them between the inner loops.
+class _ManyRuns(Loop):
+    """The loop for a batch.
 
-    Letters: s state, y outputs, p parameters, g gains, t truth, u noise, v samples, m moving point and its map.
+    More letters: t truth, u noise, v samples, z last outputs, m moving point, then its map and the surface's shape, b
+    first values of the statistics, r what depends on these and gains only, e values.
     """
 
-    def __init__(self, loop: BatchLoop, numba: bool) -> None:
-        self.loop, self.text, self.places = loop, Text("batch"), dict[str, int]()
-        self.formulas = Formulas(self.text, loop.equations)
-        self.inner, self.width = (f"range({BATCH})", str(BATCH)) if numba else ("(slice(None),)", "len(start)")
-        equations, statistics = loop.equations, loop.statistics
-        self.count = {"s": len(equations.state), "y": len(equations.measured), "p": len(equations.parameters)}
-        self.count |= {"g": len(equations.gains), "t": len(statistics.truth), "u": self.count["y"]}
-        self.count |= {"v": len(statistics.samples), "m": len(loop.moving.point) if loop.moving else 0}
-        names = self.formulas.names | {statistics.elapsed: sp.Symbol("now", real=True)}
-        names |= _numbered("t", statistics.truth) | _numbered("b", statistics.begun)
-        names |= _numbered("v", statistics.samples)
-        lasting = {names[symbol] for symbol in (*statistics.begun, *equations.gains)}
-        self.fixed: dict[sp.Expr, sp.Symbol] = {}
-        self.first = _renamed(statistics.first, names)
+    text: ManyRuns
+    arguments = (
+        "start, first, gains, moves, noise, truth, known, which, lengths, arriving, held, elapsed, reach, "
+        "tolerance, late, result"
+    )
+    lengths = "lengths"
+
+    def __init__(self, text: ManyRuns, loop: BatchLoop) -> None:
+        super().__init__(text, loop.equations)
+        statistics = self.statistics = loop.statistics
+        self.loop, self.moving = loop, loop.moving
+        size = len(loop.moving.point) if loop.moving else 0
+        self.count |= {"t": len(statistics.truth), "u": self.count["y"], "m": size}
+        names = self.names | {statistics.elapsed: sp.Symbol("now", real=True)} | numbered("t", statistics.truth)
+        names |= numbered("b", statistics.begun) | numbered("v", statistics.samples)
+        lasting = {names[symbol] for symbol in (*statistics.begun, *self.equations.gains)}
+        self.lasting: dict[sp.Expr, sp.Symbol] = {}
+        self.first = renamed(statistics.first, names)
         every = (statistics.error, *statistics.means, *statistics.judged, statistics.hidden, statistics.behind)
-        self.values = [take_out(each, lasting, self.fixed, "r") for each in _renamed(every, names)]
-
-    def row(self, name: str) -> str:
-        """Place where a run's number is kept."""
-        return f"work[{self.places.setdefault(name, len(self.places))}, i]"
-
-    def runs(self) -> Any:
-        """Loop over the runs."""
-        return self.text.over(self.inner)
-
-    def load(self, letters: str, row: str = "") -> None:
-        """Load the numbers of some letters from their rows, or from other rows."""
-        for letter in letters:
-            for k in range(self.count[letter]):
-                self.text.assign(f"{letter}{k}", self.row(f"{row or letter}{k}"))
-
-    def keep(self, letters: str) -> None:
-        """Keep the numbers of some letters in their rows."""
-        for letter in letters:
-            for k in range(self.count[letter]):
-                self.text.store(self.row(f"{letter}{k}"), f"{letter}{k}")
-
-    def load_parameters(self, place: int) -> None:
-        """Load the parameters at one of a step's instants."""
-        self.load("p", f"p_{place}_" if self.loop.varying else "")
-
-    def load_gains(self) -> None:
-        """Load the gains, and what depends on gains only."""
-        self.load("g")
-        for name in self.formulas.fixed.values():
-            self.text.assign(name.name, self.row(name.name))
-
-    def load_all(self, place: int) -> None:
-        """Load whatever the equations use."""
-        self.load("sy")
-        self.load_parameters(place)
-        self.load_gains()
-
-    def gather(self, letter: str, array: str, column: int, index: str, row: str = "") -> None:
-        """Keep the numbers of a letter that an array has for this run."""
-        for k in range(self.count[letter]):
-            self.text.store(self.row(f"{row or letter}{k}"), f"{array}[which[i, {column}], {index}, {k}]")
-
-    def choose(self, condition: str, values: str) -> None:
-        """Replace the state by other values where a condition holds."""
-        for k in range(self.count["s"]):
-            self.text.assign(f"s{k}", f"where({condition}, {values}{k}, s{k})")
-
-    def written(self) -> Text:
-        """Write the whole loop."""
-        text, updates = self.text, self.loop.equations.update
-        with text.function("run", ARGUMENTS):
-            head = len(text.lines)
-            self.begin()
-            self.arrive("0")
-            if updates:
-                self.correct_first()
-            self.accumulate("0")
-            with text.loop("k", "lengths"):
-                self.step()
-                if updates:
-                    with text.block("if", "c >= 0"):
-                        self.arrive("c")
-                        with self.runs():
-                            self.load_all(EACH)
-                            self.correct()
-                            self.keep("sy")
-                    with self.runs():
-                        self.load("s")
-                        self.load_gains()
-                        self.look_whether_due()
-                with text.block("if", "some(off)"), self.runs():  # resets are rare, and dear
-                    self.reset()
-                with text.block("if", "c >= 0"):
-                    if not updates:
-                        self.arrive("c")
-                    self.accumulate("c")
-            with self.runs():
-                for k, name in enumerate((*COLUMNS, *self.means())):
-                    text.store(f"result[i, {k}]", self.row(name))
-        text.lines.insert(head, f"    work = np.empty(({len(self.places)}, {self.width}))")
-        return text
-
-    def means(self) -> list[str]:
-        """Rows of sums and numbers of the means."""
-        return [f"mean{k}" for k in range(2 * len(self.loop.statistics.means))]
+        self.values = [take_out(each, lasting, self.lasting, "r") for each in renamed(every, names)]
 
     def begin(self) -> None:
-        """Keep what the arguments hold for each run, and begin the statistics."""
-        text, moving = self.text, self.loop.moving
-        with self.runs():
-            for letter, array in (("g", "gains"), ("s", "start")):
-                for k in range(self.count[letter]):
-                    text.assign(f"{letter}{k}", f"{array}[i, {k}]")
-                    text.store(self.row(f"{letter}{k}"), f"{letter}{k}")
-            for expression, symbol in self.formulas.fixed.items():
-                text.store(self.row(symbol.name), text.print(expression))
-            for k in range(self.count["y"]):
-                text.store(self.row(f"y{k}"), "0.0")
+        text = self.text
+        with text.runs():
+            self.load("x", "start[i, {}]", to="s")
+            self.load("g", "gains[i, {}]")
+            self.fix(self.fixed)
+            self.load("y", "0.0", to="z")
+            if self.loop.held:  # named here, for by the order of its rows numba rounds
+                self.load("y", "0.0", to="y_0_")
+            self.load("p", "known[which[i, 2], 0, {}]")
             size = self.count["m"]
-            for k in range(size * (size + 2) + len(moving.shape) if moving else 0):
-                text.store(self.row(f"m{k}"), f"moves[i, {k}]")
-            self.gather("p", "known", 2, "0", "p_0_" if self.loop.varying else "")
-            zero = dict.fromkeys((*COLUMNS, "alive", *self.means()), "0.0")
+            for k in range(size * (size + 2) + len(self.moving.shape) if self.moving else 0):
+                text.assign(f"m{k}", f"moves[i, {k}]")
+            zero = dict.fromkeys((*COLUMNS, *self.means), "0.0")
             for name, value in (zero | {"outside": "-1.0", "nearest": "math.inf", "alive": "1.0"}).items():
-                text.store(self.row(name), value)
+                text.assign(name, value)
+
+    @property
+    def means(self) -> list[str]:
+        """Sums and numbers of the means."""
+        return [f"mean{k}" for k in range(2 * len(self.statistics.means))]
+
+    def look(self, instant: int) -> None:
+        self.load("y", f"y_{instant}_{{}}" if self.loop.held else "z{}")
+        if self.loop.varying:
+            self.load("p", f"p_{instant}_{{}}")
 
     def step(self) -> None:
-        """A step of the Runge-Kutta method, with what is known at its instants."""
         text, loop = self.text, self.loop
-        text.assign("h", "lengths[k]")
         text.assign("c", "arriving[k + 1]")
         if loop.held or loop.varying:
-            with self.runs():
-                for place in sorted({*PLACES, EACH}):
-                    for j in range(self.count["y"] if loop.held else 0):
-                        text.store(self.row(f"y_{place}_{j}"), f"held[i, k, {place}, {j}]")
+            with text.runs():
+                for instant in sorted({*PLACES, EACH}):
+                    if loop.held:
+                        self.load("y", f"held[i, k, {instant}, {{}}]", to=f"y_{instant}_")
                     if loop.varying:
-                        self.gather("p", "known", 2, f"{EACH}*k + {place}", f"p_{place}_")
+                        self.load("p", f"known[which[i, 2], {EACH}*k + {instant}, {{}}]", to=f"p_{instant}_")
         text.assign("off", "False")
-
-        def look(place: int) -> None:
-            self.load("y", f"y_{place}_" if loop.held else "")
-            self.load_parameters(place)
-
-        with self.runs():
-            self.load("s")
-            self.load_gains()
-            self.formulas.step(look)
-            if not loop.equations.update:
+        with text.runs():
+            super().step()
+            if not self.updates:
                 self.look_whether_due()
-            self.keep("s")
 
-    def correct_first(self) -> None:
-        """Correct the start by those first samples that are to correct it."""
-        with self.runs():
-            for k in range(self.count["y"]):
-                sample = self.row(f"v{k}")
-                self.text.store(sample, f"where(first[i, {k}] > 0.0, {sample}, math.nan)")
-            self.load_all(0)
-            self.correct()
-            self.keep("s")
+    @contextmanager
+    def at_sample(self, end: str) -> Iterator[str]:
+        """Open a block for the sample at the end of a step, if there is one, and yield its index."""
+        with nullcontext() if end == "0" else self.text.block("if", "c >= 0"):
+            yield "0" if end == "0" else "c"
 
-    def correct(self) -> None:
-        """Update by the samples, one output after the other; NaN corrects nothing."""
+    def take_samples(self, end: str) -> None:
+        if not self.updates:  # a sample is then known from the next step on
+            return
         text = self.text
-        for k, block in enumerate(self.formulas.update):
-            text.assign("sample", self.row(f"v{k}"))
-            text.assign("there", "sample == sample")
-            text.assign(f"y{k}", f"where(there, sample, y{k})")
-            text.copy("x", "s", self.count["s"])
-            text.formulas(block, "n")
-            self.choose("there", "n")
+        with self.at_sample(end) as sample:
+            self.arrive(sample)
+            with text.runs():
+                for k in range(self.count["y"] if end == "0" else 0):  # which corrects only a start that was given
+                    text.assign(f"v{k}", f"where(first[i, {k}] > 0.0, v{k}, math.nan)")
+                self.load("y", "z{}")
+                self.update("v{}")
+                self.load("y", "y{}", to="z")
+        if end != "0":
+            with text.runs():
+                self.look_whether_due()
 
     def look_whether_due(self) -> None:
         """Find out whether a reset is due in one of the runs, or a state is no longer finite."""
-        text = self.text
-        if self.loop.equations.reset:
-            text.copy("x", "s", self.count["s"])
-            text.assign("off", f"off | {text.print(self.formulas.condition)}")
-        text.assign("size", self.formulas.size)
-        text.assign("lost", f"where(size < {LARGEST_SQUARED_STATE!r}, False, {self.row('alive')} > 0.0)")
-        text.assign("off", "off | lost")
+        if self.equations.reset:
+            self.load("x", "s{}")
+            self.text.assign("off", f"off | {self.text.print(self.condition)}")
+        self.measure()
+        self.text.assign("off", f"off | where({SMALL}, False, alive > 0.0)")
 
     def reset(self) -> None:
-        """Reset where it is due, and note where the state is no longer finite."""
         text = self.text
-        self.load("s")
-        self.load_gains()
-        text.assign("alive", self.row("alive"))
-        if self.loop.equations.reset:
-            text.copy("x", "s", self.count["s"])
-            text.assign("due", text.print(self.formulas.condition))
-            text.formulas(self.formulas.reset, "n")
-            self.choose("due", "n")
-            text.store(self.row("resets"), f"{self.row('resets')} + where(due, alive, 0.0)")
-        text.assign("size", self.formulas.size)
-        text.assign("finite", f"size < {LARGEST_SQUARED_STATE!r}")
-        text.assign("now_lost", "where(finite, 0.0, alive)")
-        text.store(self.row("diverged"), f"where(now_lost > 0.0, k + 1.0, {self.row('diverged')})")
-        text.store(self.row("alive"), "where(finite, alive, 0.0)")
-        self.keep("s")
+        with text.block("if", "some(off)"), text.runs():  # resets are rare, and dear
+            super().reset()
+            with text.only(f"where({SMALL}, False, alive > 0.0)"):
+                text.replace("diverged", "k + 1.0")
+                text.replace("alive", "0.0")
+
+    def note_reset(self) -> None:
+        self.text.replace("resets", "resets + alive")
+
+    def keep(self, end: str) -> None:
+        with self.at_sample(end) as sample:
+            if not self.updates:
+                self.arrive(sample)
+            self.accumulate(sample)
+
+    def end(self) -> None:
+        with self.text.runs():
+            for k, name in enumerate((*COLUMNS, *self.means)):
+                self.text.store(f"result[i, {k}]", name)
 
     def arrive(self, sample: str) -> None:
         """Find the truth at a sample, and the sample, NaN where there is none."""
         text, loop = self.text, self.loop
-        moving, updates = loop.moving, loop.equations.update
-        alike = {"t": loop.truths_alike, "u": loop.noises_alike}
-        for letter, array, column in (("t", "truth", 1), ("u", "noise", 0)):
-            if alike[letter]:
-                for k in range(self.count[letter]):
-                    text.assign(f"{letter}{k}", f"{array}[0, {sample}, {k}]")
-            elif letter == "u" or moving is None:
-                with self.runs():
-                    self.gather(letter, array, column, sample)
-        with self.runs():
-            if moving is not None:
-                self.move(moving, sample)
-            self.load("".join(letter for letter in "tu" if not alike[letter]))
+        sources = [("u", "noise", 0, loop.noises_alike)]
+        if loop.moving is None:
+            sources.append(("t", "truth", 1, loop.truths_alike))
+        for letter, array, column, alike in sources:
+            with nullcontext() if alike else text.runs():
+                self.load(letter, f"{array}[{0 if alike else f'which[i, {column}]'}, {sample}, {{}}]")
+        with text.runs():
+            if loop.moving:
+                self.move(loop.moving, sample)
             text.assign("seen", " & ".join(f"(abs(t{k}) <= reach)" for k in range(self.count["t"] - 1)))
-            for k, place in enumerate(loop.statistics.measured):
-                text.assign("sample", f"where(seen, t{place} + u{k}, math.nan)")
-                if updates:
-                    text.store(self.row(f"v{k}"), "sample")
-                if not updates or sample == "0":
-                    output = self.row(f"y{k}")
-                    text.store(output, f"where(sample == sample, sample, {output})")
+            for k, place in enumerate(self.statistics.measured):
+                text.assign(f"v{k}", f"where(seen, t{place} + u{k}, math.nan)")
+                if not self.updates or sample == "0":
+                    text.assign(f"z{k}", f"where(v{k} == v{k}, v{k}, z{k})")
 
     def move(self, moving: MovingPoint, sample: str) -> None:
         """Move the point to the next sample, and remember how near it came and how fast."""
-        text, size, truths = self.text, self.count["m"], self.count["t"]
-        self.load("m")
+        text, size = self.text, self.count["m"]
         if sample != "0":
             for k in range(size):
-                row = [self.row(f"m{size + (size + 1) * k + j}") for j in range(size + 1)]
+                row = [f"m{size + (size + 1) * k + j}" for j in range(size + 1)]
                 text.assign(f"X{k}", " + ".join(f"{row[j]}*m{j}" for j in range(size)) + f" + {row[size]}")
-            text.copy("m", "X", size)
-            self.keep("m")
-        for k in range(len(moving.shape)):
-            text.assign(f"w{k}", self.row(f"m{size * (size + 2) + k}"))
-        names = _numbered("m", moving.point) | _numbered("w", moving.shape)
-        text.formulas(_renamed((*moving.coordinates, moving.distance), names), "t")
-        self.keep("t")
-        text.assign("distance", f"t{truths}")
-        distance, nearest, drop = map(self.row, ("distance", "nearest", "drop"))
+            self.load("m", "X{}")
+        shape = {symbol: sp.Symbol(f"m{size * (size + 2) + k}", real=True) for k, symbol in enumerate(moving.shape)}
+        text.formulas(renamed((*moving.coordinates, moving.distance), numbered("m", moving.point) | shape), "t")
+        near = f"t{self.count['t']}"
         if sample != "0":
-            text.assign("drop", f"abs(distance - {distance})")
-            text.store(drop, f"where(drop > {drop}, drop, {drop})")
-        text.store(nearest, f"where(distance >= {nearest}, {nearest}, distance)")
-        text.store(distance, "distance")
+            text.assign("change", f"abs({near} - distance)")
+            text.assign("drop", "where(change > drop, change, drop)")
+        text.assign("nearest", f"where({near} >= nearest, nearest, {near})")
+        text.assign("distance", near)
 
     def accumulate(self, sample: str) -> None:
         """Accumulate the statistics at a sample; errors count from the sample `late` on."""
-        text, statistics = self.text, self.loop.statistics
-        with self.runs():
-            self.load_all(EACH if sample != "0" else 0)
-            self.load("v" if self.loop.truths_alike else "tv")
+        text, statistics = self.text, self.statistics
+        with text.runs():
+            self.load("y", "z{}")
             text.assign("now", f"elapsed[{sample}]")
-            text.copy("x", "s", self.count["s"])
-            if statistics.begun and sample == "0":
+            self.load("x", "s{}")
+            if sample == "0":
                 text.formulas(self.first, "b")
-                for expression, symbol in self.fixed.items():
-                    text.store(self.row(symbol.name), text.print(expression))
-            for k in range(len(self.fixed) if statistics.begun else 0):
-                text.assign(f"r{k}", self.row(f"r{k}"))
-            text.assign("alive", self.row("alive"))
+                self.fix(self.lasting)
             text.formulas(self.values, "e")
             self.judge()
-            outside, squares, worst = map(self.row, ("outside", "squares", "worst"))
-            text.store(outside, f"where(largest < tolerance, {outside}, {sample} + 0.0)")
-            text.store(self.row("judged"), "largest")
-            text.store(self.row("final"), "error")
+            text.assign("outside", f"where(largest < tolerance, outside, {sample} + 0.0)")
+            text.assign("judged", "largest")
+            text.assign("final", "error")
             text.assign("counts", f"{sample} >= late")
-            text.store(squares, f"{squares} + where(counts, error*error, 0.0)")
-            text.store(worst, f"where(counts & (error > {worst}), error, {worst})")
+            text.assign("squares", "squares + where(counts, error*error, 0.0)")
+            text.assign("worst", "where(counts & (error > worst), error, worst)")
             for k in range(len(statistics.means)):
                 text.assign("there", f"counts & (abs(e{1 + k}) < math.inf)")
-                total, number = self.row(f"mean{2 * k}"), self.row(f"mean{2 * k + 1}")
-                text.store(total, f"{total} + where(there, e{1 + k}, 0.0)")
-                text.store(number, f"{number} + where(there, 1.0, 0.0)")
+                text.assign(f"mean{2 * k}", f"mean{2 * k} + where(there, e{1 + k}, 0.0)")
+                text.assign(f"mean{2 * k + 1}", f"mean{2 * k + 1} + where(there, 1.0, 0.0)")
 
     def judge(self) -> None:
         """Find the error, and the largest of the values that are judged; both are NaN without an estimate."""
@@ -378,14 +273,3 @@ class _Writer:
             text.assign("largest", f"where(e{hidden + 1}, math.inf, largest)")
         text.assign("largest", "where(seen, largest, math.nan)")
         text.assign("error", "where(seen, e0, math.nan)")
-
-
-def _numbered(letter: str, symbols: Symbols) -> dict[sp.Symbol, sp.Symbol]:
-    """Names of symbols in the loop: a letter and a number."""
-    return {symbol: sp.Symbol(f"{letter}{k}", real=True) for k, symbol in enumerate(symbols)}
-
-
-def _renamed(expressions: tuple[sp.Basic, ...], names: Mapping[sp.Symbol, sp.Symbol]) -> list[sp.Basic]:
-    found = [expression.xreplace(dict(names)) for expression in expressions]
-    refuse_what_differs(found)
-    return found
