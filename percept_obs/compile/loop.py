@@ -2,7 +2,7 @@
 
 The loop is unrolled down to scalars, so that the Python text runs as it is and numba compiles the same text.
 Whatever a user may want to move (motion, gains, noise, start) is an argument; only a new structure compiles.
-For many runs side by side `percept_obs.compile.batch_loop` writes it.
+For many runs side by side `percept_obs.compile.batch` writes it.
 """
 
 from __future__ import annotations
