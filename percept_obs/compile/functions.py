@@ -80,7 +80,7 @@ def function_source(
     """
     text = Text(language)
     names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate(symbols)}
-    with text.function("evaluate", ["x", "out"]):
+    with text.function("evaluate", "x, out"):
         for k, name in enumerate(names.values()):
             text.assign(name.name, f"x[{k}]")
         renamed = [e.xreplace(names) for e in derived(expressions, "an expression")]

@@ -8,13 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.util import find_spec
-from inspect import getsource
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percept_obs.compile import vector_functions
 from percept_obs.compile.arrays import Array, Flags
 from percept_obs.compile.equations import Equations
 from percept_obs.compile.functions import executed
@@ -44,12 +42,6 @@ def choose(language: Language | None, steps: float, equations: Equations | None 
     if language is None and steps < WORTH_COMPILING and (equations is None or not _is_compiled(equations)):
         return "python"
     return language or ("numba" if find_spec("numba") else "python")
-
-
-def beginning(language: Language) -> str:
-    """Text before a loop over runs or rows: functions of numbers for numba, of whole arrays in Python."""
-    arrays = "\n\nmath, where, some = np, np.where, np.any\n" if language == "python" else ""
-    return getsource(vector_functions) + arrays
 
 
 @dataclass(frozen=True)

@@ -1,101 +1,121 @@
-"""Text of the loop: one Runge-Kutta loop, written once, printed in Python and in JavaScript.
+"""The loop that integrates equations: described once, and written for one run in Python and in JavaScript.
 
 The loop is unrolled down to scalars, so that the Python text runs as it is and numba compiles the same text.
 Whatever a user may want to move (motion, gains, noise, start) is an argument; only a new structure compiles.
+For many runs side by side `percept_obs.compile.batch` writes it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from fractions import Fraction
 from functools import lru_cache
 from math import lcm
 
 import sympy as sp
 
-from percept_obs.compile.equations import Equations
+from percept_obs.compile.equations import Equations, Symbols
 from percept_obs.compile.integrator import COUPLING, EACH, LARGEST_SQUARED_STATE, PLACES, WEIGHTS
 from percept_obs.compile.text import Printed, Text, refuse_what_differs
 
 LAST = len(WEIGHTS) - 1
-ARGUMENTS = ("start", "steps", "measured", "parameters", "samples", "gains", "varying", "states", "resets")
+SMALL = f"size < {LARGEST_SQUARED_STATE!r}"
 
 
 @lru_cache(maxsize=512)
 def source(equations: Equations, language: Printed = "python") -> str:
-    """Text of the loop for these equations, ``run(start, ..., resets)`` with `ARGUMENTS`, flat arrays as in `Table`.
+    """Text of the loop for these equations, ``run(start, ..., resets)``, of flat arrays as in `Table`.
 
     It fills states and resets, and returns the index of the row at which the state was no longer finite, or -1.  Raises
     NotCompilable for an expression that would not mean the same in both languages.
     """
-    loop = _Loop(Text(language), equations)
-    text, n, m = loop.text, len(equations.state), len(equations.measured)
-    with text.function("run", ARGUMENTS):
-        for k in range(n):
-            text.assign(f"s{k}", f"start[{k}]")
-        loop.load("g", "gains")
-        loop.load("p", "parameters")
-        for expression, symbol in loop.fixed.items():
-            text.assign(symbol.name, text.print(expression))
-        text.assign("row", "0")
-        if m and text.python:
-            text.assign("each", f"{EACH + 1} if len(measured) > {m}*len(steps) else 1")
-        loop.update_by_samples()
-        loop.keep()
-        with text.loop("k", "steps"):
-            text.assign("h", "steps[k]")
-            loop.step(loop.load_known)
-            loop.update_by_samples(f"{m}*(k + 1) + ")
-            if equations.reset:
-                text.copy("x", "s", n)
-                with text.block("if", text.print(loop.condition)):
-                    text.formulas(loop.reset, "s")
-                    text.store("resets[k + 1]", "1.0")
-            text.assign("size", loop.size)
-            with text.block("unless", f"size < {LARGEST_SQUARED_STATE!r}"):
-                text.leave("k + 1")
-            text.assign("row", f"row + {n}")
-            loop.keep()
-        text.leave("-1")
-    return str(text)
+    return Loop(Text(language), equations).written()
 
 
-class Formulas:
-    """Equations in the loop's names, and the lines of a step by the Runge-Kutta method.
+class Loop:
+    """The loop, as it is written for one run over flat arrays; a batch of runs extends it.
 
     State k is s{k} between stages and x{k} in formulas; these use y{k}, p{k} and g{k} for measured outputs, parameters
     and gains.  Terms that depend on gains only are taken out of the loop, to `fixed`.
     """
 
+    arguments = "start, steps, measured, parameters, samples, gains, varying, states, resets"
+    lengths = "steps"  # the argument that has the length of each step
+
     def __init__(self, text: Text, equations: Equations) -> None:
-        self.text = text
+        self.text, self.equations = text, equations
         groups = {"x": equations.state, "y": equations.measured, "p": equations.parameters, "g": equations.gains}
-        self.groups: dict[str, tuple[sp.Symbol, ...]] = groups
-        self.names = {
-            s: sp.Symbol(f"{letter}{k}", real=True) for letter, group in groups.items() for k, s in enumerate(group)
-        }
+        self.count = {letter: len(group) for letter, group in groups.items()}
+        self.names = {s: name for letter, group in groups.items() for s, name in numbered(letter, group).items()}
         self.fixed: dict[sp.Expr, sp.Symbol] = {}
-        self.flow, self.reset = self.prepared(equations.flow), self.prepared(equations.reset)
-        self.update = [self.prepared(block) for block in equations.update]
+        self.flow, self.after_reset = self.prepared(equations.flow), self.prepared(equations.reset)
+        self.updates = [self.prepared(block) for block in equations.update]
         (self.condition,) = self.prepared([equations.reset_condition])
-        self.size = " + ".join(f"s{k}*s{k}" for k in range(len(equations.state)))
 
     def prepared(self, expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Expressions in the loop's names, without terms that depend on gains only."""
-        renamed = [e.xreplace(self.names) for e in expressions]
-        refuse_what_differs(renamed)
-        variables = tuple(self.names[symbol] for letter in "xy" for symbol in self.groups[letter])
-        gains = {self.names[symbol] for symbol in self.groups["g"]}
-        return [take_out(_nested(e, variables), gains, self.fixed) for e in renamed]
+        variables = tuple(self.names[symbol] for symbol in (*self.equations.state, *self.equations.measured))
+        gains = {self.names[symbol] for symbol in self.equations.gains}
+        return [take_out(_nested(e, variables), gains, self.fixed) for e in renamed(expressions, self.names)]
 
-    def step(self, look: Callable[[int], None]) -> None:
-        """Write a step of the length h; `look` loads the known signals at one of its instants."""
+    def written(self) -> str:
+        """Write the loop."""
+        text = self.text
+        with text.function("run", self.arguments):
+            self.begin()
+            self.take_samples("0")
+            self.keep("0")
+            with text.loop("k", self.lengths):
+                text.assign("h", f"{self.lengths}[k]")
+                self.step()
+                self.take_samples("k + 1")
+                self.reset()
+                self.keep("k + 1")
+            self.end()
+        return str(text)
+
+    def begin(self) -> None:
+        """Load what the arguments hold, and compute what depends on gains only."""
+        m = self.count["y"]
+        self.load("x", "start[{}]", to="s")
+        self.load("g", "gains[{}]")
+        self.load("p", "parameters[{}]")
+        self.fix(self.fixed)
+        self.text.assign("row", "0")
+        if m and self.text.python:
+            self.text.assign("each", f"{EACH + 1} if len(measured) > {m}*len(steps) else 1")
+
+    def look(self, instant: int) -> None:
+        """Load the known signals at one of a step's instants."""
+        text, m, p = self.text, self.count["y"], self.count["p"]
+        if not text.python:  # the page's table has every instant
+            self.load("y", f"measured[{(EACH + 1) * m}*k + {{}}]", first=instant * m)
+        elif m:
+            with text.block("if", "each > 1") if instant else nullcontext():
+                self.load("y", f"measured[{m}*(each*k + {instant}) + {{}}]")
+        if p:
+            with text.block("if", "varying"):
+                self.load("p", f"parameters[{EACH * p}*k + {{}}]", first=instant * p)
+
+    def load(self, letter: str, place: str, first: int = 0, to: str = "") -> None:
+        """Load numbers by their letter, or to another, from places {}, counted from the first one."""
+        for k in range(self.count[letter]):
+            self.text.assign(f"{to or letter}{k}", place.format(first + k))
+
+    def fix(self, terms: Mapping[sp.Expr, sp.Symbol]) -> None:
+        """Compute terms that `take_out` has taken out."""
+        for expression, symbol in terms.items():
+            self.text.assign(symbol.name, self.text.print(expression))
+
+    def step(self) -> None:
+        """Write a step of the length h by the Runge-Kutta method."""
         for stage, place in enumerate(PLACES):
             if stage == 0 or place != PLACES[stage - 1]:
-                look(place)
+                self.look(place)
             self._stage(stage)
         if PLACES[-1] != EACH:
-            look(EACH)
+            self.look(EACH)
         self.text.assign("part", _shared(WEIGHTS))
         for k in range(len(self.flow)):
             self.text.assign(f"s{k}", f"s{k} + part*({_summed(LAST, k)})")
@@ -112,49 +132,49 @@ class Formulas:
         for k in range(n if WEIGHTS[stage] and stage < LAST else 0):
             self.text.assign(f"q{k}", _summed(stage, k))
 
+    def take_samples(self, end: str) -> None:
+        """Update at the end of a step, counted from 1, or at the first start, 0."""
+        self.update("samples[{}]" if end == "0" else f"samples[{self.count['y']}*({end}) + {{}}]")
 
-class _Loop(Formulas):
-    """The lines of the loop around a step."""
-
-    def load(self, letter: str, array: str, rows: int = 0, row: int = 0) -> None:
-        """Load a row of an array that has so many rows a step."""
-        width = len(self.groups[letter])
-        for k in range(width):
-            first = f"{rows * width}*k + " if rows else ""
-            self.text.assign(f"{letter}{k}", f"{array}[{first}{row * width + k}]")
-
-    def load_outputs(self, instant: int) -> None:
-        """Load the measured outputs at one of a step's instants, where Python's table may have one instant a step."""
-        m = len(self.groups["y"])
-        for k in range(m):
-            self.text.assign(f"y{k}", f"measured[{m}*(each*k + {instant}) + {k}]")
-
-    def load_known(self, instant: int) -> None:
-        """Load all that is known at one of a step's instants."""
-        if not self.text.python:  # the page's table has every instant
-            self.load("y", "measured", EACH + 1, instant)
-        elif instant == 0:
-            self.load_outputs(0)
-        elif self.groups["y"]:
-            with self.text.block("if", "each > 1"):
-                self.load_outputs(instant)
-        if self.groups["p"]:
-            with self.text.block("if", "varying"):
-                self.load("p", "parameters", EACH, instant)
-
-    def update_by_samples(self, first: str = "") -> None:
+    def update(self, sample: str) -> None:
         """Update by each sample that is there, one output after the other."""
-        for k, block in enumerate(self.update):
-            value = f"samples[{first}{k}]"
-            with self.text.block("if", f"{value} == {value}"):  # not NaN
-                self.text.assign(f"y{k}", value)
-                self.text.copy("x", "s", len(self.flow))
+        for k, block in enumerate(self.updates):
+            value = sample.format(k)
+            with self.text.only(f"{value} == {value}"):  # not NaN
+                self.text.replace(f"y{k}", value)
+                self.load("x", "s{}")
                 self.text.formulas(block, "s")
 
-    def keep(self) -> None:
-        """Store the state in its row."""
-        for k in range(len(self.flow)):
+    def reset(self) -> None:
+        """Reset where it is due, and compute the squared norm of the state."""
+        if self.equations.reset:
+            self.load("x", "s{}")
+            with self.text.only(self.text.print(self.condition)):
+                self.text.formulas(self.after_reset, "s")
+                self.note_reset()
+        self.measure()
+
+    def note_reset(self) -> None:
+        """Note that the state was reset."""
+        self.text.store("resets[k + 1]", "1.0")
+
+    def keep(self, end: str) -> None:
+        """Store the state in its row, if it is finite."""
+        n = self.count["x"]
+        if end != "0":
+            with self.text.block("unless", SMALL):
+                self.text.leave(end)
+            self.text.assign("row", f"row + {n}")
+        for k in range(n):
             self.text.store(f"states[row + {k}]" if k else "states[row]", f"s{k}")
+
+    def end(self) -> None:
+        """Return."""
+        self.text.leave("-1")
+
+    def measure(self) -> None:
+        """Compute the squared norm of the state."""
+        self.text.assign("size", " + ".join(f"s{k}*s{k}" for k in range(self.count["x"])))
 
 
 def _shared(shares: Sequence[Fraction]) -> str:
@@ -210,3 +230,15 @@ def take_out(
             rest = [e for e in expression.args if e not in constant]
             expression = expression.func(named(expression.func(*constant)), *rest)
     return expression.func(*(take_out(e, gains, fixed, letter) for e in expression.args))
+
+
+def numbered(letter: str, symbols: Symbols) -> dict[sp.Symbol, sp.Symbol]:
+    """Names of symbols in the loop: a letter and a number."""
+    return {symbol: sp.Symbol(f"{letter}{k}", real=True) for k, symbol in enumerate(symbols)}
+
+
+def renamed(expressions: Iterable[sp.Basic], names: Mapping[sp.Symbol, sp.Symbol]) -> list[sp.Basic]:
+    """Expressions with other names of their symbols; NotCompilable if they would not mean the same everywhere."""
+    found = [expression.xreplace(dict(names)) for expression in expressions]
+    refuse_what_differs(found)
+    return found

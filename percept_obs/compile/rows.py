@@ -11,10 +11,10 @@ import sympy as sp
 from percept_obs.compile.arrays import Array
 from percept_obs.compile.equations import Symbols
 from percept_obs.compile.functions import executed
-from percept_obs.compile.kernels import Language, beginning
+from percept_obs.compile.kernels import Language
 from percept_obs.compile.loop import take_out
 from percept_obs.compile.machine_code import machine_code
-from percept_obs.compile.text import Text
+from percept_obs.compile.many_runs import ManyRuns
 
 Rows = Callable[[Sequence[Array], Array], Array]
 
@@ -50,20 +50,21 @@ def _source(
     tables: tuple[Symbols, ...], constants: Symbols, expressions: tuple[sp.Basic, ...], language: Language
 ) -> str:
     """Text of the loop over the rows, in numpy over all at once; terms of constants only stand before it."""
-    text, fixed, arguments = Text("batch"), dict[sp.Expr, sp.Symbol](), [f"table{k}" for k in range(len(tables))]
+    arguments = [f"table{k}" for k in range(len(tables))]
+    text, fixed = ManyRuns(language, "len(values)"), dict[sp.Expr, sp.Symbol]()
     places = {s: f"{name}[i, {k}]" for name, of in zip(arguments, tables, strict=True) for k, s in enumerate(of)}
     names = {symbol: sp.Symbol(f"x{k}", real=True) for k, symbol in enumerate((*places, *constants))}
     # what depends on constants alone is computed once, before the loop
     left = [take_out(e.xreplace(names), {names[symbol] for symbol in constants}, fixed) for e in expressions]
-    with text.function("run", [*arguments, "numbers", "values"]):
+    with text.function("run", f"{', '.join(arguments)}, numbers, values"):
         for k, symbol in enumerate(constants):
             text.assign(names[symbol].name, f"numbers[{k}]")
         for expression, name in fixed.items():
             text.assign(name.name, text.print(expression))
-        with text.over("(slice(None),)" if language == "python" else "range(len(values))"):
+        with text.runs():
             for symbol, place in places.items():
                 text.assign(names[symbol].name, place)
             text.formulas(left, "e")
             for k in range(len(left)):
                 text.store(f"values[i, {k}]", f"e{k}")
-    return f"{beginning(language)}\n\n{text}"
+    return str(text)

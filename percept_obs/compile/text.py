@@ -15,7 +15,7 @@ from sympy.printing.pycode import PythonCodePrinter
 from percept_obs.compile.intermediate import Intermediate, common_subexpressions, intermediates
 
 Printed = Literal["python", "javascript"]
-Notation = Literal["python", "javascript", "batch"]
+Notation = Literal["python", "javascript", "many"]
 
 LARGEST_PRODUCT = 8
 """Powers of numbers or of roots up to this are printed as products, the same in every language."""
@@ -128,14 +128,14 @@ for _function in FUNCTIONS:
 
 _NOTATIONS = {
     "python": {"math": "math", "abs": "abs", "choice": "({1} if {0} else {2})", "and": "and", "or": "or"},
-    "batch": {"math": "math", "abs": "abs", "choice": "where({0}, {1}, {2})", "and": "&", "or": "|"}
+    "many": {"math": "math", "abs": "abs", "choice": "where({0}, {1}, {2})", "and": "&", "or": "|"}
     | {"exp": "exp", "tanh": "tanh"},
     "javascript": {"math": "Math", "abs": "Math.abs", "choice": "({0} ? {1} : {2})", "and": "&&", "or": "||"},
 }
 
 
 class Text:
-    """Lines of a program in Python, in Python for a batch, where choices are no branches, or in JavaScript."""
+    """Lines of a program in Python or in JavaScript; for many runs see `percept_obs.compile.many_runs`."""
 
     def __init__(self, language: Notation) -> None:
         if language not in _NOTATIONS:
@@ -178,8 +178,10 @@ class Text:
             shared, results = common_subexpressions(expressions, sp.numbered_symbols("c", real=True))
             self.printed[key] = [(s.name, self.print(e)) for s, e in shared], [self.print(e) for e in results]
         named, formulas = self.printed[key]
-        for name, formula in (*named, *((f"{targets}{k}", formula) for k, formula in enumerate(formulas))):
+        for name, formula in named:
             self.assign(name, formula)
+        for k, formula in enumerate(formulas):
+            self.replace(f"{targets}{k}", formula)
 
     def leave(self, value: str) -> None:
         """Add a line that returns a value."""
@@ -194,10 +196,9 @@ class Text:
         if not self.python:
             self.line("}")
 
-    def function(self, name: str, arguments: Sequence[str]) -> Any:
+    def function(self, name: str, arguments: str) -> Any:
         """Open a function."""
-        head = f"{name}({', '.join(arguments)})"
-        return self._indented(f"def {head}", f"function {head}")
+        return self._indented(f"def {name}({arguments})", f"function {name}({arguments})")
 
     def loop(self, index: str, over: str) -> Any:
         """Open a loop over an array's indices."""
@@ -205,12 +206,16 @@ class Text:
             f"for {index} in range(len({over}))", f"for (let {index} = 0; {index} < {over}.length; {index}++)"
         )
 
-    def over(self, runs: str) -> Any:
-        """Open a loop over runs, which only Python has."""
-        return self._indented(f"for i in {runs}", "")
-
     def block(self, word: Literal["if", "unless"], condition: str) -> Any:
         """Open a block under a condition."""
         if word == "unless":
             return self._indented(f"if not {condition}", f"if (!({condition}))")
         return self._indented(f"if {condition}", f"if ({condition})")
+
+    def only(self, condition: str) -> Any:
+        """Open a block in which `replace` counts where a condition holds."""
+        return self.block("if", condition)
+
+    def replace(self, name: str, expression: str) -> None:
+        """Assign a local variable; inside `only` where its condition holds."""
+        self.assign(name, expression)

@@ -139,7 +139,9 @@ class Observer:
         unknown = sorted(set(values) - set(known))
         if unknown:
             raise ValueError(f"the {self.name} observer has no gain {', '.join(unknown)}; it has {', '.join(known)}")
-        return replace(self, gains=tuple(replace(g, value=values.get(g.name, g.value)) for g in self.gains))
+        return replace(
+            self, gains=tuple(replace(g, value=values[g.name]) if g.name in values else g for g in self.gains)
+        )
 
     @property
     def gain_values(self) -> dict[sp.Symbol, float]:

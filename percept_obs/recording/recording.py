@@ -222,6 +222,11 @@ class Recording:
         return readonly(np.diff(self.time))
 
     @cached_property
+    def longest_interval(self) -> float:
+        """Longest time from a sample to the next, in seconds."""
+        return float(self.intervals.max())
+
+    @cached_property
     def last_outputs(self) -> Array:
         """Outputs, with the last one before where a sample was lost."""
         there = np.isfinite(self.outputs)

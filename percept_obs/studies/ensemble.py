@@ -223,7 +223,7 @@ def units(scenario: Scenario, observer: Observer, believed: Motion) -> dict[str,
 def _refuse_values(plan: Plan) -> None:
     """Refuse settings that no run could have, before any begins."""
     scenario, camera, observer = plan.scenario, plan.camera, plan.observer
-    ends = {str(name): (float(each.min()), float(each.max())) for name, each in plan.grid.coords.items()}
+    ends = {str(name): (float(each.values.min()), float(each.values.max())) for name, each in plan.grid.coords.items()}
     for gain in observer.gains:
         for value in ends.get(gain.name, ()):  # what lies between is allowed as well
             observer.with_gains(**{gain.name: value})

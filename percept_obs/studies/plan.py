@@ -12,8 +12,7 @@ import numpy as np
 import sympy as sp
 
 from percept_obs.compile import Array, Indices, Language, vectorised
-from percept_obs.compile.batch import Batch, run_batch
-from percept_obs.compile.batch_loop import BATCH, COLUMNS, BatchLoop, MovingPoint, Statistics
+from percept_obs.compile.batch import BATCH, COLUMNS, Batch, BatchLoop, MovingPoint, Statistics, run_batch
 from percept_obs.compile.integrator import by_step, instants, step_grid
 from percept_obs.observability import cramer_rao
 from percept_obs.observers.base import Observer

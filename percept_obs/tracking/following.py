@@ -175,8 +175,10 @@ def _follow_one_point(
     _warn_of_long_steps(observer, grid)
     times = grid.instants if believed.constants is None else grid.times[:1]  # many instants take long
     known = known_signals(believed, recording.view, times, recording.unit)
-    units = dict(zip((symbol.name for symbol in recording.view.coordinates), recording.scale.tolist(), strict=True))
-    named = {name: value * units.get(name, 1.0) for name, value in named_start(start, form.coordinates).items()}
+    named = named_start(start, form.coordinates)
+    if named and recording.unit != 1:
+        units = dict(zip(map(str, recording.view.coordinates), recording.scale.tolist(), strict=True))
+        named = {name: value * units.get(name, 1.0) for name, value in named.items()}
     outputs = dict(zip(form.measured, samples[0].tolist(), strict=True))
     initial = state_at_start(observer, outputs, named, zip(form.parameters, known[0].tolist(), strict=True))
     arriving = np.empty((0, len(form.measured)))
@@ -283,7 +285,8 @@ def _require_fit(grid: TimeGrid, observer: Observer, believed: Motion) -> None:
         )
     if grid.longest_hold < math.inf:
         raise DoesNotFit(f"the {observer.name} observer needs its outputs at all times; leave longest_hold out")
-    believed.refuse_unit(recording.unit)
+    if recording.unit != 1:
+        believed.refuse_unit(recording.unit)
     if observer.constant_motion and believed.signal is not None and not believed.signal.constant:
         raise DoesNotFit(
             f"the {observer.name} observer needs a motion with constant coefficients, but the one that it is to "

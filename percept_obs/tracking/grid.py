@@ -77,7 +77,7 @@ class TimeGrid:
 
 def time_grid(recording: Recording, step: float, hold: Hold, longest_hold: float) -> TimeGrid:
     """Divide a recording into steps no longer than given, one from each sample to the next where that is short."""
-    if recording.intervals.max() <= step * (1 + STEP_ROUNDING):
+    if recording.longest_interval <= step * (1 + STEP_ROUNDING):
         return TimeGrid(recording, recording.time, np.arange(len(recording.time)), hold, longest_hold)
     return TimeGrid(recording, *step_grid(recording.time, step), hold, longest_hold)
 

@@ -124,12 +124,12 @@ class ImagingSurface(OnePoint):
         """Symbols y1, y2, ... of the image coordinates."""
         return sp.symbols(f"y1:{len(self.image) + 1}", real=True)
 
-    @property
+    @cached_property
     def inverse_distance(self) -> sp.Symbol:
         """Symbol of the inverse depth or range, numbered after the image coordinates."""
         return sp.Symbol(f"y{len(self.image) + 1}", real=True)
 
-    @property
+    @cached_property
     def coordinates(self) -> tuple[sp.Symbol, ...]:
         """Image coordinates and then the inverse distance."""
         return (*self.image_coordinates, self.inverse_distance)
