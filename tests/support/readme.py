@@ -44,7 +44,7 @@ MOVING = ROOT / ".github/observer_lab.gif"
 
 COLOURS = 64  # in a picture: curves and letters need no more, and the file is a quarter as large
 SCREEN = (1100, 570)
-MOVING_SCREEN = (1100, 470)
+MOVING_SCREEN = (1100, 500)
 FRAMES = 41  # of the moving picture, ten a second
 
 
@@ -96,8 +96,10 @@ LABS = {
 """Labs of the gallery, with what their pictures show."""
 
 PLAYS = f"{LABS['observer_lab'][1]} The picture plays these 4 s again and again."
-WITHOUT_CONTROLS = ".percept-lab :is(button, .handy, .strip) { display: none }"
+WITHOUT_CONTROLS = ".percept-lab button { visibility: hidden } .percept-lab :is(.handy, .strip) { display: none }"
 """A picture cannot be pressed, so it shows nothing to press."""
+ENDS = 0.99
+"""Share of the time with which the picture ends: at the whole the lab asks for a hand."""
 REST = 3000
 """Milliseconds that the last of the images stays."""
 
@@ -222,7 +224,7 @@ def moving_picture(browser, count=FRAMES):
     with first_screen(browser, observer_lab(), MOVING_SCREEN, color_scheme="light") as page:
         page.add_style_tag(content=WITHOUT_CONTROLS)
         for k in range(count):
-            page.evaluate(SHOW, k / (count - 1))
+            page.evaluate(SHOW, ENDS * k / (count - 1))
             page.wait_for_function(DRAWN)
             page.evaluate("tests.still()")
             images.append(Image.open(io.BytesIO(page.screenshot())).convert("RGB"))
@@ -251,7 +253,7 @@ def few_colours(png):
 
 
 def few(image):
-    return image.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    return image.quantize(COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
 
 
 def write_pictures():
