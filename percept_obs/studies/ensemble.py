@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import copy
 import json
 import math
 import os
 from collections.abc import Generator, Mapping, Sequence
-from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from percept_obs.compile import Array, Language, choose, source
 from percept_obs.compile.batch import compiled
 from percept_obs.compile.integrator import LONGEST_STEP
-from percept_obs.observability import cramer_rao
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Camera, Scenario, record
 from percept_obs.recording.many import numbers_of
@@ -29,13 +27,12 @@ from percept_obs.system.surfaces import POINT
 from percept_obs.tracking.following import DoesNotFit, named_start, track
 from percept_obs.tracking.grid import Hold
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import Kind, bar, checked, limit, needed, positive, warn, workers
+from percept_obs.validation import bar, checked, limit, needed, positive, warn, workers
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Start = Mapping[str, float] | Sequence[float] | None
-Client = Annotated[Any, Kind("a client of Dask", lambda c: c is None or hasattr(c, "get_executor"), "Client()")]
 
 CHUNK = 2048
 """Runs that are computed, and stored, together unless asked otherwise."""
@@ -66,9 +63,7 @@ def ensemble(
     tolerance: float = TOLERANCE,
     after: float = 0.0,
     coordinates: Sequence[str] = (),
-    prior: Mapping[str, float] | None = None,
     language: Language | None = None,
-    client: Client = None,
     store: str | os.PathLike[str] | None = None,
     chunk: int = CHUNK,
 ) -> Any:
@@ -100,13 +95,8 @@ def ensemble(
         Seconds from which on errors count for their root mean square, their largest value, NEES and NIS.
     coordinates : sequence of str, optional
         Such as ("y3",), whose absolute errors are to stay within the tolerance instead.
-    prior : mapping of names to variances, optional
-        What is known before the first sample, see `cramer_rao`; with it the Dataset has the bound and the efficiency.
-        An empty one stands for the variance that the extended Kalman filter begins with.
     language : "python" or "numba", optional
         See `solve`; Python's runs in numpy.
-    client : distributed.Client, optional
-        Of a Dask cluster, whose workers share the runs; the threads of this machine when left out.
     store : path, optional
         A Zarr store that keeps what is done chunk by chunk, and then the result.  The same call on a store that was
         left behind goes on where it stopped.
@@ -118,11 +108,9 @@ def ensemble(
     xarray.Dataset
         With the dimension "seed" and those of `over`: status, outcome, settling_time (s, infinite if it has not
         converged), judged (what the tolerance bounds, at the end), final, rms, worst (errors of the inverse distance in
-        1/m), resets, diverged_at (s, infinite if it does not), for an observer with a covariance the means nees and
-        nis, and with a prior the bound of rms (1/m) and, without the dimension "seed", the efficiency: root mean
-        squares of both over the seeds, one by the other, 1 at best without bias.  `status` and `outcome` are numbers
-        whose meanings are among their attributes.  A point that does not stay in front of the camera has the status
-        "not_in_front" and NaN, as the bound has without noise.  ``to_netcdf`` and ``to_zarr`` keep it with all
+        1/m), resets, diverged_at (s, infinite if it does not), and for an observer with a covariance the means nees and
+        nis.  `status` and `outcome` are numbers whose meanings are among their attributes.  A point that does not stay
+        in front of the camera has the status "not_in_front" and NaN.  ``to_netcdf`` and ``to_zarr`` keep it with all
         settings.
 
     Raises
@@ -147,7 +135,7 @@ def ensemble(
     -----
     Products and sums are rounded once in machine code, so that a run differs from `track`'s by about 1e-14 relative,
     more only where a reset or a switch is met by a hair.  The same seeds give the same numbers, bit for bit, in any
-    chunks, threads or workers on processors of one kind.
+    chunks and threads on processors of one kind.
 
     Examples
     --------
@@ -157,7 +145,7 @@ def ensemble(
     >>> round(found.settling_time.sel(gain=10.0, seed=0).item(), 2)
     1.91
     """
-    needed(*(("course", "xarray") if store is None else ("cluster", "xarray", "zarr")))
+    needed(*(("course", "xarray") if store is None else ("store", "xarray", "zarr")))
     camera, motion = camera or scenario.camera, believed or scenario.motion
     duration = scenario.duration if duration is None else float(duration)
     limit(float(seeds) if isinstance(seeds, int | np.integer) else len(seeds), "seeds", "take fewer", MOST_RUNS)
@@ -188,7 +176,6 @@ def ensemble(
         tolerance,
         after,
         tuple(coordinates),
-        None if prior is None else tuple((name, float(value)) for name, value in prior.items()),
         choose(language, runs * steps),
     )
     _refuse_values(plan)
@@ -196,7 +183,7 @@ def ensemble(
     shape = runs, len(plan.statistics)
     with open_store(store, about["fingerprint"], shape, chunk) as stored:
         results = np.zeros(shape) if stored is None else stored[:]
-        run_missing(plan, results, chunk, client, stored)
+        run_missing(plan, results, chunk, stored)
         found = _dataset(plan, results).assign_attrs(
             {name: value if isinstance(value, str | float) else json.dumps(value) for name, value in about.items()}
         )
@@ -243,8 +230,6 @@ def _refuse_values(plan: Plan) -> None:
     first = record(scenario, short, replace(camera, period=short))
     run = track(first, observer, plan.start, plan.hold, plan.believed, plan.step, "python")
     run.outcome(plan.tolerance, *plan.coordinates)
-    if plan.prior is not None:
-        cramer_rao(first, observer.form, dict(plan.prior), ends["noise"][1] ** 2 if "noise" in ends else None)
     if not 0 <= plan.after <= plan.duration:
         raise ValueError(f"after is {plan.after} s; errors count from then on, within the {plan.duration} s of a run")
 
@@ -274,7 +259,6 @@ def _settings(plan: Plan) -> dict[str, Any]:
         "tolerance": plan.tolerance,
         "after": plan.after,
         "judged_coordinates": list(plan.coordinates),
-        "prior": None if plan.prior is None else dict(plan.prior),
         "language": plan.language,
     }
     times = np.linspace(0, plan.duration, PROBES)
@@ -297,12 +281,7 @@ def _dataset(plan: Plan, results: Array) -> xr.Dataset:
             values = np.where(np.isfinite(values), values, -1).astype(np.int8)
             about |= {"flag_values": np.arange(len(flags), dtype=np.int8), "flag_meanings": " ".join(flags)}
         variables[name] = (dimensions, values.reshape(shape), about)
-    found = plan.grid.assign(variables)
-    if plan.prior is not None:
-        error, least = ((found[name] ** 2).mean("seed", skipna=False) ** 0.5 for name in ("rms", "bound"))
-        about = {"units": "1", "long_name": "rms error over its bound, both in the mean square over the seeds"}
-        found["efficiency"] = (error / least).assign_attrs(about)
-    return found
+    return plan.grid.assign(variables)
 
 
 @contextmanager
@@ -351,20 +330,13 @@ def open_store(
         Path(f"{store}.lock").unlink(missing_ok=True)
 
 
-def run_missing(plan: Plan, results: Array, chunk: int, client: Any = None, stored: Any = None) -> None:
-    """Compute the runs that have no results yet, in chunks, and keep them in a store; warn if interrupted.
-
-    With a client Dask gives another worker what a worker that dies had begun.
-    """
+def run_missing(plan: Plan, results: Array, chunk: int, stored: Any = None) -> None:
+    """Compute the runs that have no results yet, in chunks, and keep them in a store; warn if interrupted."""
     missing = results[:, 0] == NOT_RUN
     chunks = [slice(begin, min(begin + chunk, len(results))) for begin in range(0, len(results), chunk)]
     todo = [each for each in chunks if missing[each].any()]
-    if client is None:
-        compiled(plan.loop, plan.language)  # here and now, where numba may set warning filters
-    if client or workers() > 1:
-        computed = _concurrent(plan, todo, client)
-    else:
-        computed = ((each, plan.compute(each)) for each in todo)
+    compiled(plan.loop, plan.language)  # here and now, where numba may set warning filters
+    computed = _concurrent(plan, todo) if workers() > 1 else ((each, plan.compute(each)) for each in todo)
     with closing(computed), bar(None, "runs", len(results), initial=int((~missing).sum()), unit="run") as progress:
         try:
             for each, found in computed:
@@ -377,17 +349,12 @@ def run_missing(plan: Plan, results: Array, chunk: int, client: Any = None, stor
             warn(Unfinished(f"interrupted: {int(missing.sum())} of {len(results)} runs are missing"))
 
 
-def _concurrent(plan: Plan, todo: Sequence[slice], client: Any) -> Generator[tuple[slice, Array]]:
-    """Yield chunks as they are done, on the threads of this machine or on a cluster."""
-    executor: Executor = client.get_executor() if client else ThreadPoolExecutor(workers())
-    # a task's result, unlike scattered data, is made again when the worker that holds it dies
-    there = client.submit(copy.copy, plan, pure=False) if client else plan
-    begun: dict[Future[Array], slice] = {}
+def _concurrent(plan: Plan, todo: Sequence[slice]) -> Generator[tuple[slice, Array]]:
+    """Yield chunks as threads have done them."""
+    executor = ThreadPoolExecutor(workers())
     try:
-        begun |= {executor.submit(Plan.compute, there, each): each for each in todo}
+        begun = {executor.submit(plan.compute, each): each for each in todo}
         for future in as_completed(begun):
             yield begun.pop(future), future.result()
     finally:
-        for future in begun:
-            future.cancel()
-        executor.shutdown()
+        executor.shutdown(cancel_futures=True)

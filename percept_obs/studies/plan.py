@@ -15,15 +15,13 @@ from percept_obs.compile import Array, Indices, Language, vectorised
 from percept_obs.compile.batch import Batch, run_batch
 from percept_obs.compile.batch_loop import BATCH, COLUMNS, BatchLoop, MovingPoint, Statistics
 from percept_obs.compile.integrator import by_step, instants, step_grid
-from percept_obs.observability import cramer_rao
 from percept_obs.observers.base import Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
 from percept_obs.observers.parts import first_seen, hats
-from percept_obs.recording import Camera, Scenario, record
+from percept_obs.recording import Camera, Scenario
 from percept_obs.recording.many import numbers_of, with_numbers
 from percept_obs.recording.reckoning import transitions
 from percept_obs.recording.simulation import LONGEST_STEP_SHARE
-from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion, coefficients
 from percept_obs.system.signal import from_the_start
 from percept_obs.system.surfaces import POINT, BehindCamera
@@ -54,12 +52,11 @@ STATISTICS = MappingProxyType(
         "worst": ("1/m", "its largest value after the transient"),
         "resets": ("1", "number of resets"),
         "diverged_at": ("s", "time at which the estimate grew beyond all bounds"),
-        "bound": ("1/m", "least rms error after the transient that the noise leaves to any unbiased observer"),
         "nees": ("1", "mean normalised estimation error squared after the transient"),
         "nis": ("1", "mean normalised innovation squared after the transient"),
     }
 )
-"""Unit and meaning of each statistic; the bound needs a prior, NEES a covariance, NIS a measurement update as well."""
+"""Unit and meaning of each statistic; NEES needs a covariance, NIS a measurement update as well."""
 
 CAMERA = {"noise": "1", "period": "s", "dropout": "1"}
 """Settings of a camera that can vary, with units; the noise is its bound or its standard deviation."""
@@ -73,7 +70,8 @@ SAFETY_FACTOR = 4.0
 Columns = Mapping[str, Array]
 """Values of what varies, one for each of L runs, by name; always with "seed"."""
 
-Variances = tuple[tuple[str, float], ...]
+Numbers = tuple[tuple[str, float], ...]
+"""Numbers of a scenario that vary, by their names."""
 
 
 def grid_of(over: Mapping[str, Any], seeds: Array, units: Mapping[str, str]) -> xr.Dataset:
@@ -116,7 +114,6 @@ class Plan:
     tolerance: float
     after: float
     coordinates: tuple[str, ...]
-    prior: Variances | None
     language: Language
 
     @cached_property
@@ -128,7 +125,7 @@ class Plan:
     def statistics(self) -> tuple[str, ...]:
         """Names of the statistics of every run, its status first."""
         means = ("nees", "nis")[: len(accumulated(self.observer).means)]
-        missing = {"nees", "nis", "bound"} - {*means, *(() if self.prior is None else ("bound",))}
+        missing = {"nees", "nis"} - {*means}
         return tuple(name for name in STATISTICS if name not in missing)
 
     @cached_property
@@ -220,8 +217,6 @@ class Plan:
         if loop.moving:
             in_front = self._in_front(columns, sums, turning, time)
         found = statistics_of(sums, elapsed, grid - grid[0], late)
-        if self.prior is not None:
-            found["bound"] = self._bounds(columns, camera, self.prior)
         rest = [np.where(in_front, found[name], np.nan) for name in self.statistics[1:]]
         return np.stack([np.where(in_front, DONE, NOT_IN_FRONT), *rest], axis=-1)
 
@@ -254,20 +249,6 @@ class Plan:
             scene = tuple((name, float(columns[name][k])) for name in self.scenes)
             in_front[k] = np.isfinite(_coordinates(self.scenario, scene, time.tobytes())).all()
         return np.asarray(in_front)
-
-    def _bounds(self, columns: Columns, camera: Camera, prior: Variances) -> Array:
-        """Least error of each run, shape (L,); the seed matters only where samples are lost."""
-        varied = [name for name in ("noise", "dropout") if name in columns]
-        seed = ["seed"] if camera.dropout or "dropout" in columns else []
-        rows, which = _distinct(columns, [*self.scenes, *varied, *seed])
-        found = []
-        for row in rows.tolist():
-            values = dict(zip([*self.scenes, *varied, *seed], row, strict=True))
-            scene = tuple((name, values[name]) for name in self.scenes)
-            taken = camera_with(camera, {name: values[name] for name in varied})
-            run = self.duration, taken, int(values.get("seed", 0))
-            found.append(_least_error(self.scenario, scene, *run, self.observer.form, prior, self.after))
-        return np.array(found)[which]
 
     def _noise(self, columns: Columns, camera: Camera, samples: int) -> tuple[Array, Indices]:
         """Noise of measured outputs, NaN where a sample is lost, shape (R, K, m), and the index of each run's."""
@@ -333,36 +314,13 @@ class Plan:
 
 
 @lru_cache(maxsize=256)
-def _coordinates(scenario: Scenario, numbers: Variances, times: bytes) -> Array:
+def _coordinates(scenario: Scenario, numbers: Numbers, times: bytes) -> Array:
     """True coordinates of a variant of a scenario, NaN if its point does not stay in front of the camera."""
     at = np.frombuffer(times)
     try:
         return with_numbers(scenario, **dict(numbers)).coordinates(at)
     except BehindCamera:
         return np.full((len(at), len(scenario.view.coordinates)), np.nan)
-
-
-@lru_cache(maxsize=4096)
-def _least_error(
-    scenario: Scenario,
-    numbers: Variances,
-    duration: float,
-    camera: Camera,
-    seed: int,
-    form: PartitionedSystem,
-    prior: Variances,
-    after: float,
-) -> float:
-    """Root mean square over time of the Cramer-Rao bound of the inverse distance in 1/m; NaN without noise."""
-    if not camera.noise.variance:
-        return np.nan
-    try:
-        recording = record(with_numbers(scenario, **dict(numbers)), duration, camera, seed)
-    except BehindCamera:
-        return np.nan
-    bound = cramer_rao(recording, form, dict(prior))
-    late = from_the_start(bound.elapsed, after)
-    return float(np.sqrt(np.mean(bound.of(form.coordinates[-1].name)[late] ** 2)))
 
 
 def _between(times: Array, known: Array, values: Array) -> Array:

@@ -1,11 +1,9 @@
-"""An ensemble says of every run what `track` says of it, in any chunks, here or on a cluster; what is done is kept."""
+"""An ensemble says of every run what `track` says of it, in any chunks; what is done is kept."""
 
 import os
-import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import as_completed
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,7 +21,6 @@ from percept_obs import (
     PerspectiveSystem,
     Scenario,
     affine,
-    cramer_rao,
     ekf,
     ensemble,
     ibo,
@@ -172,34 +169,6 @@ def test_coordinates_are_judged_when_they_are_asked_for():
     assert found.judged.item() == pytest.approx(outcome.final)
 
 
-def test_efficiency_is_the_error_over_the_bound():
-    over, camera = {"noise": [0.0, 0.02], "Z": [3.0, -1.0]}, Camera(0.05, Gaussian(0.01), dropout=0.1)
-    kalman = ekf(BOTH, noise_variance=1e-4)
-    found = ensemble(EQ35, kalman, over, [2, 5], 4.0, camera, {"y3": 0.3}, after=2.0, prior={"y3": 0.02})
-    scene, seen = with_numbers(EQ35, Z=3.0), replace(camera, noise=Gaussian(0.02))
-    runs = [track(record(scene, 4.0, seen, seed), kalman, {"y3": 0.3}) for seed in (2, 5)]
-    late = runs[0].elapsed >= 2
-    errors = [np.mean(run.error[late, -1] ** 2) for run in runs]
-    least = [np.mean(cramer_rao(run.recording, BOTH, {"y3": 0.02}).of("y3")[late] ** 2) for run in runs]
-    one = found.sel(noise=0.02, Z=3.0)
-    assert least[0] != least[1], "they lost different samples"
-    np.testing.assert_allclose(one.bound, np.sqrt(least), rtol=1e-12)
-    np.testing.assert_allclose(one.efficiency, np.sqrt(np.mean(errors) / np.mean(least)), rtol=1e-9)
-    assert found.efficiency.sizes == {"noise": 2, "Z": 2}
-    assert_array_equal(np.isfinite(found.efficiency), [[False, False], [True, False]])
-    assert (found.bound.attrs["units"], found.efficiency.attrs["units"]) == ("1/m", "1")
-
-
-@pytest.mark.slow
-def test_a_filter_that_knows_the_noise_comes_near_to_the_bound(xr):
-    camera, start = Camera(0.05, Gaussian(0.01)), xr.DataArray(0.4 + 0.05 * np.random.default_rng(1).normal(size=50))
-    drawn = {"start_y3": start.rename({"dim_0": "seed"})}
-    observer = ekf(BOTH, noise_variance=1e-4, hidden_variance=0.0025)
-    found = ensemble(EQ35, observer, drawn, 50, 10.0, camera, after=2.0, prior={"y3": 0.0025})
-    assert 0.9 < found.efficiency.item() < 1.2
-    assert ensemble(EQ35, ibo(BOTH), drawn, 50, 10.0, camera, after=2.0, prior={"y3": 0.0025}).efficiency.item() > 1.5
-
-
 @pytest.mark.slow
 def test_it_keeps_names_units_and_settings_in_files(xr, tmp_path):
     found = ensemble(EQ35, ekf(BOTH), {"b1": [0.4, 0.5], "start_y3": [0.2]}, 2, 1.0, NOISY)
@@ -285,8 +254,6 @@ test_what_makes_no_sense_is_refused = refuses(
     ({"coordinates": ("y9",)}, "no coordinate y9"),
     ({"start": (0.0,)}, "expected 3"),
     ({"seeds": 10**9}, "at most 1e"),
-    ({"prior": {}, "camera": Camera()}, "without noise there is no bound"),
-    ({"prior": {"y9": 1.0}, "camera": NOISY}, "the prior names y9"),
 )
 
 
@@ -305,7 +272,7 @@ def test_what_is_missing_is_told_with_how_to_get_it(monkeypatch):
         ensemble(EQ35, ibo(AFFINE.measure("y1")))
 
 
-# Workers and clients that die cost time only: the numbers are the same, bit for bit.
+# A process that dies costs time only: the numbers are the same, bit for bit.
 
 OVER = {"gain": np.linspace(2, 20, 16), "b1": [0.4, 0.5]}
 SETTINGS = {"over": OVER, "seeds": 4, "duration": 4.0, "camera": NOISY, "chunk": 8, "language": "python"}
@@ -323,28 +290,6 @@ ensemble(EQ35, ibo(BOTH), **SETTINGS, store="kept.zarr")
 def alone():
     """The ensemble computed on this machine."""
     return ensemble(EQ35, ibo(BOTH), **SETTINGS)
-
-
-@pytest.mark.slow
-@pytest.mark.filterwarnings("ignore")
-def test_a_killed_worker_costs_time_only(xr, alone, tmp_path):
-    distributed = pytest.importorskip("distributed")
-    cluster = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "local_directory": tmp_path}
-    with distributed.LocalCluster(**cluster) as two, distributed.Client(two) as client:
-        pids, killed = list(client.run(os.getpid).values()), []
-
-        def first_then_kill(futures):
-            for future in as_completed(futures):
-                yield future
-                if not killed:
-                    killed.append(pids[0])
-                    os.kill(pids[0], getattr(signal, "SIGKILL", signal.SIGTERM))  # which ends it on Windows
-
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(module, "as_completed", first_then_kill)
-            found = ensemble(EQ35, ibo(BOTH), **SETTINGS, client=client, store=tmp_path / "kept.zarr")
-        assert killed
-    xr.testing.assert_identical(found, alone)
 
 
 @pytest.mark.slow
