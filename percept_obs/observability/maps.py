@@ -183,9 +183,8 @@ def bound_map(
             "more seconds or a smaller noise_variance"
         )
     variance = (along @ np.linalg.solve(information, along.swapaxes(1, 2)))[:, 0, 0]
-    relative = np.full(len(points), np.nan)
-    relative[seen] = np.sqrt(variance) / surface.distances(at[seen])
-    relative = relative.reshape(resolution, resolution)
+    relative = np.full((resolution, resolution), np.nan)
+    relative[seen.reshape(relative.shape)] = np.sqrt(variance) / surface.distances(at[seen])
     if not np.isfinite(relative).any():
         raise ValueError(
             f"no place of the image has a bound: points seen from y1 = {y1}, y2 = {y2} at a distance of {distance} m "
