@@ -138,6 +138,7 @@ class Servoing:
 
 
 _interaction = vectorised(SYSTEM.coordinates, list(INTERACTION))
+_turning = vectorised(KNOWN, list(STEERING.turning))
 
 
 def _parameters(velocity: Array) -> Array:
@@ -196,6 +197,7 @@ def servo(
     starts: ArrayLike,
     depth: str | Observer,
     ratio: float = 1.0,
+    looking: float = 0.0,
     noise: float = 1e-3,
     duration: float = 10.0,
     seed: int = 0,
@@ -212,6 +214,9 @@ def servo(
         and knows the commanded velocities.
     ratio : float
         Factor of the depth that is not observed: believed over true, or over that of the goal.
+    looking : float
+        Speed in m/s for an image error of 1 that is added where `steering` turns the velocity to see more, summed over
+        the points; it vanishes with the error.
     noise : float
         Standard deviation of each image coordinate.
     duration : float
@@ -275,6 +280,10 @@ def servo(
         seen = np.moveaxis(np.concatenate([y, believed[..., None]], axis=-1), -1, 0)
         L = np.stack(_interaction(*seen), axis=-1).reshape(len(y), -1, 6)
         u = -(np.linalg.pinv(L) @ e[:, :, None])[..., 0]
+        if looking:
+            turn = np.stack(_turning(*seen, *_parameters(u))).sum(axis=-1).T
+            turn /= np.linalg.norm(turn, axis=1, keepdims=True)
+            u[:, :3] += looking * np.linalg.norm(e, axis=1, keepdims=True) * np.nan_to_num(turn)
         u = np.where(lost[:, None], 0.0, u)
         for name, value in zip(rows, (x, y, believed, u, lost), strict=True):
             rows[name].append(value)

@@ -18,8 +18,8 @@ FAR = [[0.1, -0.1, 1.0, 0.1, 0.2, 0.4]]
 
 
 @cache
-def run(depth):
-    return servo(FAR, depth, duration=4.0)
+def run(depth, **settings):
+    return servo(FAR, depth, duration=4.0, **settings)
 
 
 def test_the_derived_interaction_matrix_is_the_printed_one():
@@ -68,8 +68,15 @@ def test_the_recording_of_a_point_makes_the_observer_in_the_loop_run_again(obser
     np.testing.assert_allclose(again.estimate[use, 2], found.believed[0, use, 2], rtol=0.02)
 
 
+@pytest.mark.slow
+def test_steering_that_vanishes_with_the_error_looks_better_on_the_way():
+    plain, looking = run("true"), run("true", looking=0.3)
+    assert looking.excitation.sum() > 1.1 * plain.excitation.sum()
+    assert np.isfinite(looking.arrived_at()[0])
+
+
 def test_a_point_that_leaves_the_image_is_lost():
-    found = servo(FAR, "constant", ratio=1 / 20, duration=4.0)
+    found = servo(FAR, "constant", ratio=160.0, duration=4.0)
     assert found.lost[0, -1]
     assert found.arrived_at()[0] == np.inf
     assert not found.velocity[0, -1].any()

@@ -160,7 +160,7 @@ def calls():
         (choice.theta_values, {"scale": 1.0, "motion": turning, "times": [0.0, 1.0]}),
         (structure.GivenDepth, {"noise": po.Uniform(0.1), "bias": 0.1, "drift": 0.1}),
         (structure.PatchDepth, {"offsets": structure.grid_patch(1.0)}),
-        (structure.grid_patch, {"side": 1.0, "count": 3, "normal": (0.0, 0.0, 1.0)}),
+        (structure.grid_patch, {"side": 1.0, "count": 3}),
         (structure.ScaledDepthCamera, {"period": 0.01, "pixels": camera, "ratio": pixels.SignalToNoise(60.0)}),
         (structure_scenarios.chwa2019_simulation, {"section": "IV.A", "chwa_rotation": (0.0, 0.0, 0.1)}),
         (structure_scenarios.chwa2019_semigeneral, {"set_up": "simulation"}),
