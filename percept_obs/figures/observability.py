@@ -253,7 +253,7 @@ def consistency(found: Consistency, ax: Axes | None = None) -> Drawing:
     """
     ax = canvas(ax, 3.2)
     low, high = found.interval(found.samples)
-    ax.axhspan(low, high, color=look.GREEN, alpha=0.2, linewidth=0, label=f"{100 * found.confidence:g} % interval")
+    ax.axhspan(low, high, color=look.GREEN, alpha=0.2, linewidth=0, label="95 % interval")
     ax.axhline(found.outputs, color=look.BLACK, linewidth=1, linestyle="--", label="expected mean")
     ax.plot(found.time, found.nis, **look.dots(found.nis, label="samples"))
     name = f"mean of {found.samples} samples"

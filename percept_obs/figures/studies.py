@@ -251,7 +251,7 @@ def chatter(
         right.plot(one.time[1:], one.steps, linewidth=1.2, label=name, **looks[label] | {"marker": ""})
         how = "arrived at" if one.finished else "gave up at"
         yield (
-            f"{label}: {one.method} {how} {one.time[-1]:.2g} s after {one.evaluations[-1]} evaluations; its steps "
+            f"{label}: RK45 {how} {one.time[-1]:.2g} s after {one.evaluations[-1]} evaluations; its steps "
             f"were {one.steps.min():.2g} to {one.steps.max():.2g} s long."
         )
     right.set(yscale="log", xlabel="time (s)", ylabel="step that the solver took (s)")

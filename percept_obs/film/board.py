@@ -12,7 +12,7 @@ import numpy as np
 
 from percept_obs.compile import Array, Indices
 from percept_obs.recording.text_table import PathLike
-from percept_obs.validation import checked, needed, write_whole
+from percept_obs.validation import checked, needed
 
 DICTIONARY = "DICT_4X4_50"
 """OpenCV's markers of 4 x 4 cells, the largest cells that there are."""
@@ -82,10 +82,6 @@ class Board:
             return cls(**fields)
         except (ValueError, TypeError) as error:
             raise ValueError(f"'{path}' is no file of a board, {error}; write one with: percept-obs board") from None
-
-    def to_json(self, path: PathLike) -> None:
-        """Write the board's numbers, which `from_json` reads."""
-        write_whole(Path(path), self.text.encode())
 
     @property
     def text(self) -> str:

@@ -3,7 +3,7 @@
 from percept_obs.observability.bound import Bound, cramer_rao
 from percept_obs.observability.efficiency import Efficiency, efficiency
 from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
-from percept_obs.observability.lie import Codistribution, LieRanks, lie_derivatives, lie_ranks
+from percept_obs.observability.lie import Codistribution, LieRanks, lie_derivatives
 from percept_obs.observability.maps import BoundMap, bound_map
 from percept_obs.observability.measures import Measure, Observability, how_observable
 from percept_obs.observability.pointwise import instantaneous
@@ -28,7 +28,6 @@ __all__ = [
     "how_observable",
     "instantaneous",
     "lie_derivatives",
-    "lie_ranks",
     "steered",
     "steering",
     "windowed",

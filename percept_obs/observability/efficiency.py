@@ -73,11 +73,6 @@ class Efficiency:
         without = np.sqrt((squares.sum(axis=0) - squares) / (count - 1)).mean(axis=1)
         return float(math.sqrt((count - 1) * np.mean((without - without.mean()) ** 2)))
 
-    def bias(self, begin: float = -math.inf, end: float = math.inf) -> float:
-        """Largest mean error over the runs, in bounds; an observer without bias stays at about 1 / sqrt(N)."""
-        inside = self._between(begin, end)
-        return float(np.abs(self.errors[:, inside].mean(axis=0) / self.bound[inside]).max())
-
     def _between(self, begin: float, end: float) -> Flags:
         """Samples between two times, shape (K,)."""
         inside = (self.time >= begin) & (self.time <= end)

@@ -107,9 +107,7 @@ def error_gramian(recording: Recording, system: System, window: float) -> ErrorG
 
 
 @checked
-def empirical_gramian(
-    recording: Recording, system: System, window: float, perturbed: float = PERTURBATION
-) -> ErrorGramian:
+def empirical_gramian(recording: Recording, system: System, window: float) -> ErrorGramian:
     """The Gramian from runs that begin beside the truth, without derivatives.
 
     With d_i the change of the outputs by a unit change of coordinate i, the entries are the integrals of d_i^T d_j.
@@ -118,8 +116,6 @@ def empirical_gramian(
     ----------
     recording, system, window
         See `error_gramian`.
-    perturbed : float
-        Perturbation of the start, relative to the size of the coordinate.
 
     Returns
     -------
@@ -129,7 +125,7 @@ def empirical_gramian(
     Raises
     ------
     ValueError
-        As `error_gramian`, or if the perturbation is not between 0 and 1.
+        As `error_gramian`.
 
     See Also
     --------
@@ -150,23 +146,21 @@ def empirical_gramian(
     """
     form = matching_form(system, recording)
     check_window(recording, window, holds_samples=True)
-    if not 0 < perturbed < 1:
-        raise ValueError(f"the perturbed share is {perturbed}; it must lie between 0 and 1")
     time = recording.time
     last = int(np.searchsorted(time, time[-1] - window + slack_of(time), side="right")) - 1
     begins = np.unique(np.linspace(0, last, MOST_WINDOWS).round().astype(int))
     ends = np.searchsorted(time, time[begins] + window - slack_of(time))
-    matrices = _by_runs(form, recording, begins, ends, perturbed) / np.outer(recording.scale, recording.scale)
+    matrices = _by_runs(form, recording, begins, ends) / np.outer(recording.scale, recording.scale)
     return ErrorGramian(names_of(form), time[begins], matrices, window)
 
 
-def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, ends: Indices, share: float) -> Array:
+def _by_runs(form: PartitionedSystem, recording: Recording, begins: Indices, ends: Indices) -> Array:
     """Gramians of windows from some samples to others, shape (T, n, n); all runs of all windows go side by side."""
     assert recording.truth is not None
     n, time, truth = len(form.coordinates), recording.time, recording.truth
     usual = np.sqrt(np.mean(truth**2, axis=0))
-    # a coordinate that is about zero is perturbed by share^2 of its usual size
-    sizes = share * np.maximum(np.abs(truth[begins]), share * usual)
+    # a coordinate that is about zero is perturbed by the square of this share of its usual size
+    sizes = PERTURBATION * np.maximum(np.abs(truth[begins]), PERTURBATION * usual)
     signs = np.concatenate([np.eye(n), -np.eye(n)])  # central differences
     states = (truth[begins][:, None] + sizes[:, None] * signs).reshape(-1, n)
     rate = values_along(form, recording, [*rate_of(form)])

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, vectorised
 from percept_obs.observability.directions import in_words
-from percept_obs.observability.linearised import System, as_form, matching_form, names_of, rate_of
+from percept_obs.observability.linearised import System, as_form, names_of, rate_of
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.validation import MOST_TERMS, checked, limit, travels
@@ -69,17 +69,13 @@ class Codistribution:
 
         They may turn with state and motion; these belong to values drawn at random.
         """
-        return self.lost_at(self._random_values)
+        from scipy.linalg import null_space
+
+        return null_space(self._at(self._random_values).rows[0], rcond=NEGLIGIBLE)
 
     def ranks_at(self, values: Mapping[sp.Symbol, float]) -> tuple[int, ...]:
         """Rank with the orders up to 0, 1, ..., at values of coordinates, parameters and their derivatives."""
         return tuple(self._at(values).ranks[0].tolist())
-
-    def lost_at(self, values: Mapping[sp.Symbol, float]) -> Array:
-        """Directions that no order shows, orthonormal, shape (n, q); see `ranks_at`."""
-        from scipy.linalg import null_space
-
-        return null_space(self._at(values).rows[0], rcond=NEGLIGIBLE)
 
     def along(self, recording: Recording) -> LieRanks:
         """Ranks along the truth of a recording."""
@@ -127,7 +123,7 @@ class Codistribution:
 @travels
 @dataclass(frozen=True, eq=False)
 class LieRanks:
-    """Ranks of the Lie derivatives' differentials along a trajectory, from `lie_ranks`.
+    """Ranks of the Lie derivatives' differentials along a trajectory, which `how_observable` has.
 
     Parameters
     ----------
@@ -143,10 +139,9 @@ class LieRanks:
 
     Examples
     --------
-    >>> from percept_obs import Camera, PerspectiveSystem, affine, pinhole, record, scenarios
-    >>> from percept_obs.observability import lie_ranks
+    >>> from percept_obs import Camera, PerspectiveSystem, affine, how_observable, pinhole, record, scenarios
     >>> one = PerspectiveSystem(affine(), pinhole()).measure("y1")
-    >>> lie_ranks(record(scenarios.ma2005_eq35(), 2, Camera(0.5)), one).holds
+    >>> how_observable(record(scenarios.ma2005_eq35(), 4, Camera(0.1)), one).lie.holds
     True
     """
 
@@ -215,7 +210,7 @@ def lie_derivatives(system: System, orders: int | None = None, varying: bool = F
 
     See Also
     --------
-    percept_obs.observability.lie_ranks : Along a recording.
+    percept_obs.how_observable : Along a recording, among other measures.
 
     Examples
     --------
@@ -249,45 +244,12 @@ def lie_derivatives(system: System, orders: int | None = None, varying: bool = F
     return Codistribution(form, tuple(blocks), tuple(names))
 
 
-@checked
-def lie_ranks(recording: Recording, system: System, orders: int | None = None) -> LieRanks:
-    """Ranks of the Lie derivatives along the truth of a recording, with the derivatives of a motion that varies.
-
-    Parameters
-    ----------
-    recording : Recording
-        With a truth.
-    system, orders
-        See `lie_derivatives`.
-
-    Returns
-    -------
-    LieRanks
-        At every sample.
-
-    Raises
-    ------
-    ValueError
-        If system and recording do not fit, or there is no truth.
-
-    See Also
-    --------
-    lie_derivatives : In symbols.
-    how_observable : Next to other measures.
-
-    Examples
-    --------
-    >>> from percept_obs import Camera, PerspectiveSystem, affine, pinhole, record, scenarios
-    >>> from percept_obs.observability import lie_ranks
-    >>> system = PerspectiveSystem(affine(), pinhole())
-    >>> lie_ranks(record(scenarios.ma2005_eq35(), 2, Camera(1.0)), system.measure("y1"), orders=1).ranks.tolist()
-    [[1, 2], [1, 2], [1, 2]]
-    """
-    form = matching_form(system, recording)
+def lie_ranks(recording: Recording, form: PartitionedSystem) -> LieRanks:
+    """Ranks of the Lie derivatives along the truth of a recording, with the derivatives of a motion that varies."""
     signal = recording.motion.signal
     varying = signal is not None and not signal.constant
     if not varying:  # numbers are put in, so that zeros drop out
         numbers = recording.motion.values | dict(recording.view.values)
         rate = sp.ImmutableMatrix(form.rate.xreplace({s: sp.Float(v) if v else sp.S.Zero for s, v in numbers.items()}))
         form = PartitionedSystem(form.x1, form.x2, rate, (), form.coordinates, form.view)
-    return lie_derivatives(form, orders, varying).along(recording)
+    return lie_derivatives(form, varying=varying).along(recording)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import sympy as sp
@@ -14,66 +13,13 @@ from percept_obs.observability.bound import HIDDEN_VARIANCE
 from percept_obs.observability.measures import NOISE_VARIANCE
 from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.system.surfaces import POINT, ImagingSurface
+from percept_obs.system.surfaces import POINT
 from percept_obs.validation import checked, limit, positive
 
-Expressions = tuple[sp.Expr, ...]
 Range = tuple[float, float]
 
-PHI = sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"Phi{i + 1}{j + 1}", real=True))
-MOVED = sp.ImmutableMatrix(sp.symbols("d1:4", real=True))
-START = sp.ImmutableMatrix(sp.symbols("X0 Y0 Z0", real=True))
-INFORMATION = sp.symbols("J11 J12 J13 J22 J23 J33", real=True)
-
-PLACE = (*PHI, *MOVED, *START)
-"""Symbols of a point at an instant: X = Phi X0 + d, for a motion X' = A X + b."""
-
-
-@dataclass(frozen=True)
-class MapKernel:
-    """Formulas of a map at one place of the image, as expressions.
-
-    For a point that begins at X0, with P0 the variance of hidden coordinates and R that of the noise::
-
-        J = begin / P0 + (sum of gather over the samples, the first one included) / R
-        relative standard deviation = finish, at the last sample
-        not known where a distance is not positive on the way
-    """
-
-    begin: Expressions  # of X0: the prior's share of the six entries of J, on and above its diagonal, row by row
-    gather: Expressions  # of `PLACE`: a sample's share of the six entries, and the distance
-    finish: sp.Expr  # of J's entries and `PLACE`: the relative standard deviation of the distance
-
-
-@lru_cache(maxsize=64)
-def map_kernel(surface: ImagingSurface, measured: tuple[str, ...]) -> MapKernel:
-    """Derive a map's formulas for a surface and measured outputs, from the image and the distance of a point."""
-    X = PHI * START + MOVED
-    names = [symbol.name for symbol in surface.image_coordinates]
-    seen = [e for name, e in zip(names, surface.image, strict=True) if name in measured]
-    hidden = [e for name, e in zip(names, surface.image, strict=True) if name not in measured]
-    at_point = dict(zip(POINT, X, strict=True))
-    at_start = dict(zip(POINT, START, strict=True))
-
-    def upper(rows: sp.ImmutableMatrix) -> Expressions:
-        """Entries of rows^T rows on and above the diagonal."""
-        square = rows.T * rows
-        return tuple(square[i, j] for i in range(3) for j in range(i, 3))
-
-    # what is not measured, and the inverse distance, are known at first by the prior alone
-    prior = sp.ImmutableMatrix([*hidden, 1 / surface.distance]).jacobian(POINT).xreplace(at_start)
-    rows = sp.ImmutableMatrix(seen).jacobian(POINT).xreplace(at_point) * PHI
-    slope = sp.ImmutableMatrix([surface.distance]).jacobian(POINT).xreplace(at_point) * PHI
-    # slope J^-1 slope^T with J = L D L^T: less is lost to rounding than with determinants
-    a, b, c, d, e, f = INFORMATION
-    along, below = b / a, c / a
-    second = d - along * b
-    across = (e - below * b) / second
-    third = f - below * c - across**2 * second
-    z1, z2, z3 = slope[0], slope[1] - along * slope[0], slope[2] - below * slope[0]
-    variance = z1**2 / a + z2**2 / second + (z3 - across * z2) ** 2 / third
-    distance = surface.distance.xreplace(at_point)
-    return MapKernel(upper(prior), (*upper(rows), distance), sp.sqrt(variance) / distance)
+PERIOD = 0.05
+"""Seconds between samples."""
 
 
 @checked
@@ -142,14 +88,12 @@ def bound_map(
     y1: Range = (-1.0, 1.0),
     y2: Range = (-1.0, 1.0),
     resolution: int = 200,
-    period: float = 0.05,
     noise_variance: float = NOISE_VARIANCE,
-    hidden_variance: float = HIDDEN_VARIANCE,
 ) -> BoundMap:
     """Cramer-Rao bound of the distance, at each place of the image where a point is first seen.
 
     A point in space moves linearly, so that information about its start adds up without linearisation.  At each place
-    the bound is that of `cramer_rao`.
+    the bound is that of `cramer_rao`, without a prior and with a sample every 0.05 s.
 
     Parameters
     ----------
@@ -165,12 +109,8 @@ def bound_map(
         Ends of the image.
     resolution : int
         Places along either side.
-    period : float
-        Seconds between samples.
     noise_variance : float
         Of each measured output.
-    hidden_variance : float
-        Of each hidden coordinate before the first sample, as the inverse distance in 1/m^2.
 
     Returns
     -------
@@ -202,54 +142,56 @@ def bound_map(
         raise ValueError(f"measured is {measured}; name at least one of {', '.join(names)}, each once")
     if len(names) != 2:
         raise ValueError(f"the {surface.name} has {len(names)} image coordinates; a map is of two")
-    positive(
-        seconds=seconds,
-        distance=distance,
-        period=period,
-        noise_variance=noise_variance,
-        hidden_variance=hidden_variance,
-    )
+    positive(seconds=seconds, distance=distance, noise_variance=noise_variance)
     for name, ends in {"y1": y1, "y2": y2}.items():
         if not (np.isfinite(ends).all() and ends[0] < ends[1]):
             raise ValueError(f"the image ends at {name} = {ends}; give two finite numbers, the smaller one first")
     if resolution < 2:
         raise ValueError(f"the resolution is {resolution}; a map has two places or more along a side")
-    samples = seconds / period
-    limit(
-        samples * resolution**2,
-        "places and samples",
-        "lower the resolution or the seconds, or lengthen the period",
-        1e8,
-    )
+    samples = seconds / PERIOD
+    limit(samples * resolution**2, "places and samples", "lower the resolution or the seconds", 1e8)
     count = int(np.floor(samples + 1e-9)) + 1
     columns, rows = np.linspace(*y1, resolution), np.linspace(*y2, resolution)
     places = np.stack([each.ravel() for each in np.meshgrid(columns, rows)], axis=-1)
     points = surface.locate(np.hstack([places, np.full((len(places), 1), 1 / distance)]))
-    kernel, values = map_kernel(surface, measured), surface.values
-    Phi, moved = displacements(motion, period * np.arange(count, dtype=float))
+    image = dict(zip(names, surface.image, strict=True))
+    hidden = [entry for name, entry in image.items() if name not in measured]
+
+    def slopes(expressions: list[sp.Expr], points: Array) -> Array:
+        """Derivatives of q expressions by the point, shape (N, q, 3)."""
+        entries = vectorised(POINT, [e.diff(axis) for e in expressions for axis in POINT], surface.values)(*points.T)
+        return np.stack(entries, axis=-1).reshape(len(points), -1, 3)
+
+    def told(rows: Array, variance: float) -> Array:
+        """Information on the start, shape (N, 3, 3), of numbers with these derivatives by it."""
+        return rows.swapaxes(1, 2) @ rows / variance
+
     with np.errstate(all="ignore"):
-        J = np.array(vectorised(tuple(START), list(kernel.begin), values)(*points.T)) / hidden_variance
-        gather, last = vectorised(PLACE, list(kernel.gather), values), (*Phi[-1].ravel(), *moved[-1], *points.T)
+        # what is not measured, and the inverse distance, are known at first by the prior alone
+        information = told(slopes([*hidden, 1 / surface.distance], points), HIDDEN_VARIANCE)
         seen = np.ones(len(points), dtype=bool)
-        for k in range(count):
-            *share, away = gather(*Phi[k].ravel(), *moved[k], *points.T)
-            # one pass over the samples for all places at once, so that memory does not grow with the samples
-            J += np.array(share) / noise_variance
-            seen &= away > 0
-        (relative,) = vectorised((*INFORMATION, *PLACE), [kernel.finish], values)(*J, *last)
-    if np.isnan(relative[seen]).any():
+        # one pass over the samples for all places at once, so that memory does not grow with the samples
+        for Phi, moved in zip(*displacements(motion, PERIOD * np.arange(count, dtype=float)), strict=True):
+            at = points @ Phi.T + moved
+            information += told(slopes([image[name] for name in measured], at) @ Phi, noise_variance)
+            seen &= surface.distances(at) > 0
+        information, along = information[seen], (slopes([surface.distance], at) @ Phi)[seen]
+        regular = np.linalg.det(information) > 0
+    if not regular.all():
         raise ValueError(
             f"at a distance of {distance} m the images tell less than rounding takes away; take a shorter distance, "
             "more seconds or a smaller noise_variance"
         )
-    relative = np.where(seen, relative, np.nan).reshape(resolution, resolution)
+    variance = (along @ np.linalg.solve(information, along.swapaxes(1, 2)))[:, 0, 0]
+    relative = np.full((resolution, resolution), np.nan)
+    relative[seen.reshape(relative.shape)] = np.sqrt(variance) / surface.distances(at[seen])
     if not np.isfinite(relative).any():
         raise ValueError(
             f"no place of the image has a bound: points seen from y1 = {y1}, y2 = {y2} at a distance of {distance} m "
-            f"come behind the camera within seconds = {seconds}, or noise_variance = {noise_variance} or "
-            f"hidden_variance = {hidden_variance} is beyond all measure; give other numbers"
+            f"come behind the camera within seconds = {seconds}, or noise_variance = {noise_variance} is beyond all "
+            "measure; give other numbers"
         )
-    return BoundMap(system, measured, columns, rows, relative, float(period * (count - 1)), distance)
+    return BoundMap(system, measured, columns, rows, relative, PERIOD * (count - 1), distance)
 
 
 def displacements(motion: Motion, times: Array) -> tuple[Array, Array]:

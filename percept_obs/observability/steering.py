@@ -16,10 +16,13 @@ from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import POINT
-from percept_obs.validation import checked, limit, positive
+from percept_obs.validation import checked, limit
 
 VELOCITIES = (("v_c1", "v_c2", "v_c3"), ("b1", "b2", "b3"))
 """Names of the velocity that is steered, of a rigid and of an affine motion."""
+
+GAIN = 5.0
+"""Gain kappa of a steered motion in 1/s."""
 
 MOST_EVALUATIONS = 20_000
 """Largest number of evaluations of a steered motion: a few seconds of computing."""
@@ -134,18 +137,16 @@ def steering(system: PerspectiveSystem) -> Steering:
 
 
 @checked
-def steered(scenario: Scenario, gain: float = 5.0) -> Scenario:
+def steered(scenario: Scenario) -> Scenario:
     """Steer a scenario's velocity towards more excitation, at the same speed.
 
-    With the velocity v, v' = kappa (1 - v v^T / v^T v) d|w|^2 / dv.  It depends on the image and not on the distance,
-    so that a camera can do it; here it sees the image without noise.
+    With the velocity v, v' = kappa (1 - v v^T / v^T v) d|w|^2 / dv and kappa = 5/s.  It depends on the
+    image and not on the distance, so that a camera can do it; here it sees the image without noise.
 
     Parameters
     ----------
     scenario : Scenario
         With a constant motion, whose velocity is that of the beginning and not zero.
-    gain : float
-        Gain kappa in 1/s; positive.
 
     Returns
     -------
@@ -155,7 +156,7 @@ def steered(scenario: Scenario, gain: float = 5.0) -> Scenario:
     Raises
     ------
     ValueError
-        If the motion varies, the velocity is zero, or the gain is not positive.
+        If the motion varies, the velocity is zero, or it turns too fast.
 
     See Also
     --------
@@ -176,7 +177,6 @@ def steered(scenario: Scenario, gain: float = 5.0) -> Scenario:
     from scipy.interpolate import CubicSpline
 
     motion, surface = scenario.motion, scenario.surface
-    positive(gain=gain)
     if not motion.parameters or set(motion.values) != set(motion.parameters):
         raise ValueError(f"the {motion.name} motion varies or has no parameters; steer a constant affine(A, b)")
     found = steering(PerspectiveSystem(replace(motion, signal=None), surface))
@@ -184,15 +184,15 @@ def steered(scenario: Scenario, gain: float = 5.0) -> Scenario:
     if not np.any(start):
         raise ValueError("the velocity is zero, and turning does not change that; give the camera a speed")
     state = (*POINT, *found.velocity)
-    turning = gain * found.turning.xreplace(dict(zip(surface.image_coordinates, surface.image, strict=True)))
+    turning = GAIN * found.turning.xreplace(dict(zip(surface.image_coordinates, surface.image, strict=True)))
     fixed = {s: value for s, value in {**motion.values, **surface.values}.items() if s not in found.velocity}
     rate = vectorised(state, [*(motion.A * sp.ImmutableMatrix(POINT) + motion.b), *turning], fixed)
     size = scenario.duration / LONGEST_STEP * len(motion.parameters)
     limit(size, "numbers of a velocity", "take a shorter duration of the scenario")
     times = LONGEST_STEP * np.arange(int(np.ceil(scenario.duration / LONGEST_STEP - 1e-9)) + 2.0)  # beyond the end
     refused = ValueError(
-        f"steered with gain = {gain} the motion leaves every bound or turns too fast within "
-        f"{scenario.duration:.4g} s; take a smaller gain, or a shorter duration of the scenario"
+        f"steered, the motion leaves every bound or turns too fast within {scenario.duration:.4g} s; take a shorter "
+        "duration of the scenario"
     )
     evaluations = count(1)
 
@@ -202,7 +202,7 @@ def steered(scenario: Scenario, gain: float = 5.0) -> Scenario:
         return np.array(rate(*x))
 
     ends, begin = (0.0, float(times[-1])), [*scenario.position, *start]
-    with np.errstate(all="ignore"):  # LSODA, for a large gain makes the equations stiff
+    with np.errstate(all="ignore"):  # LSODA, for a large speed makes the equations stiff
         path = solve_ivp(flow, ends, begin, "LSODA", times, rtol=1e-9, atol=1e-12)
     if not path.success or not np.isfinite(path.y).all():
         raise refused

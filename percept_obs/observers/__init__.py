@@ -22,7 +22,6 @@ from percept_obs.observers.gains import Gain as Gain
 from percept_obs.observers.immersion_and_invariance import NotIntegrable as NotIntegrable
 from percept_obs.observers.known_motion import NeedsMotion as NeedsMotion
 from percept_obs.observers.parts import noise_bias as noise_bias
-from percept_obs.observers.schedule import scheduled as scheduled
 from percept_obs.system.forms import NeedsMoreOutputs as NeedsMoreOutputs
 
 OBSERVERS = tuple(dict.fromkeys(value for value in list(globals().values()) if isinstance(value, Family)))

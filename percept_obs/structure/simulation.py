@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -147,10 +146,10 @@ class PatchDepth:
 
 
 @checked
-def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0, 1.0)) -> Array:
+def grid_patch(side: float, count: int = 3) -> Array:
     """Return offsets in metres of a square grid's points from the tracked one in its centre, shape (count^2, 3).
 
-    The tracked one is first.
+    The grid faces the camera; the tracked one is first.
 
     Parameters
     ----------
@@ -158,13 +157,11 @@ def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0,
         Length of the square's side in metres.
     count : int
         Points along a side; odd, so that the tracked one is among them.
-    normal : three floats
-        Normal vector of the patch in the camera's frame; facing the camera when left out.
 
     Raises
     ------
     ValueError
-        If the side is not positive, the count is not odd and at least 3, or the normal vector is zero.
+        If the side is not positive, or the count is not odd and at least 3.
 
     See Also
     --------
@@ -180,15 +177,9 @@ def grid_patch(side: float, count: int = 3, normal: Sequence[float] = (0.0, 0.0,
     """
     if not (np.isfinite(side) and side > 0) or count < 3 or count % 2 == 0:
         raise ValueError(f"a patch needs an odd count from 3 on and a positive side, not {count} points and {side} m")
-    towards = np.asarray(normal, dtype=float)
-    if towards.shape != (3,) or not np.isfinite(towards).all() or not towards.any():
-        raise ValueError(f"the normal vector {normal!r} must be three finite numbers, not all zero")
-    # an orthonormal basis that begins with the normal; the other two span the patch
-    basis = np.linalg.svd(towards[None, :])[2][1:]
     ticks = np.linspace(-side / 2, side / 2, count)
-    grid = np.stack(np.meshgrid(ticks, ticks), axis=-1).reshape(-1, 2)
-    nearest_first = np.argsort(np.abs(grid).sum(axis=1), kind="stable")
-    return grid[nearest_first] @ basis
+    grid = np.array([(x, y, 0.0) for x in -ticks for y in ticks])
+    return grid[np.argsort(np.abs(grid).sum(axis=1), kind="stable")]
 
 
 @checked

@@ -50,7 +50,6 @@ def semigeneral(
     recording: Recording,
     motion: Motion,
     moves_at: float,
-    choice: StructureAndMotion | None = None,
     make: Callable[[CanonicalForm], Observer] = integral_sliding_mode,
     camera: Literal["kept", "given"] = "kept",
     scale: float | None = None,
@@ -63,13 +62,11 @@ def semigeneral(
     recording : Recording
         Of (y1, y2, ybar3), through both stages.
     motion : Motion
-        From `rigid`.  Known are its angular velocity and the components of the camera's velocity that `choice` knows;
-        the rest is not used unless the truth is asked for, or the camera's velocity is given.
+        From `rigid`.  Known are its angular velocity and v_c1, as in corollary 1; the rest is not used unless the truth
+        is asked for, or the camera's velocity is given.
     moves_at : float
         When the object starts to move, in seconds.  The first stage's estimates are averaged over the half second
         before it to be handed on.
-    choice : StructureAndMotion, optional
-        Unknowns of the first stage; those of corollary 1 with v_c1 known when left out.
     make : function of a form
         The observer of both stages.
     camera : "kept" or "given"
@@ -108,7 +105,7 @@ def semigeneral(
     >>> both.object_velocity[-1].round(2).tolist()
     [0.0, 0.0, -0.0]
     """
-    choice = choice or COROLLARIES[0].choice()
+    choice = COROLLARIES[0].choice()
     if camera not in ("kept", "given"):
         raise ValueError(f"the camera {camera!r} is neither 'kept' nor 'given'")
     begin, end = recording.time[[1, -2]]

@@ -13,14 +13,14 @@ from percept_obs.compile.integrator import step_grid
 from percept_obs.observers.base import Observer, with_point
 from percept_obs.recording import Recording, Scenario
 from percept_obs.tracking.following import track
-from percept_obs.validation import checked, load_pandas
+from percept_obs.validation import checked, load_pandas, positive
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-METHODS = ("RK45", "LSODA", "Radau")
-"""Adaptive solvers of scipy: explicit, switching by stiffness, implicit."""
+TOLERANCE = 1e-6
+"""Relative and absolute tolerance of the adaptive solver."""
 
 
 @checked
@@ -96,8 +96,6 @@ class Effort:
 
     Parameters
     ----------
-    method : str
-        The solver's name in scipy.
     time : array of shape (N + 1,)
         The ends of its steps in seconds.
     evaluations : array of shape (N + 1,)
@@ -119,7 +117,6 @@ class Effort:
     [True, False]
     """
 
-    method: str
     time: Array
     evaluations: Indices
     finished: bool
@@ -135,15 +132,13 @@ def effort(
     scenario: Scenario,
     observer: Observer,
     duration: float,
-    method: str = "RK45",
     start: Mapping[str, float] | None = None,
-    tolerance: float = 1e-6,
     most: int = 20_000,
 ) -> Effort:
-    """Return the steps of one of scipy's adaptive solvers for point and observer together, without noise and resets.
+    """Return the steps of an adaptive Runge-Kutta solver (RK45) for point and observer, without noise and resets.
 
     At each crossing of a jump the solver finds an error that its order does not explain, and shortens the step until
-    the jump weighs no more than the tolerance.  Once the observer slides, crossings never end (Filippov 1988).
+    the jump weighs no more than its tolerance of 1e-6.  Once the observer slides, crossings never end (Filippov 1988).
 
     Parameters
     ----------
@@ -152,18 +147,14 @@ def effort(
     observer : Observer
     duration : float
         Seconds.
-    method : str
-        One of `METHODS`.
     start : mapping of coordinate names to estimates, optional
-    tolerance : float
-        Relative and absolute.
     most : int
         Evaluations after which it gives up.
 
     Raises
     ------
     ValueError
-        If there is no such method, or the duration or the tolerance is not positive.
+        If the duration or the number of evaluations is not positive.
 
     See Also
     --------
@@ -176,12 +167,9 @@ def effort(
     >>> effort(scenarios.ma2005_eq35(), observer, 0.5).finished
     True
     """
-    from scipy import integrate
+    from scipy.integrate import RK45
 
-    if method not in METHODS:
-        raise ValueError(f"the method {method!r} is none of {', '.join(METHODS)}")
-    if not (np.isfinite([duration, tolerance]).all() and duration > 0 and tolerance > 0 and most > 0):
-        raise ValueError(f"duration {duration} s, tolerance {tolerance} and most {most} must be positive numbers")
+    positive(duration=duration, most=most)
     point = scenario.coordinates([0.0])[0]
     known = dict(zip((symbol.name for symbol in scenario.surface.coordinates), point.tolist(), strict=True))
     outputs = {name: known[name] for name in observer.form.measured}
@@ -189,10 +177,10 @@ def effort(
     form = observer.form
     outside = [known[symbol.name] for symbol in (*form.x1, *form.x2)]
     flow = with_point(observer).lambdify(scenario.motion)
-    solver = getattr(integrate, method)(flow, 0.0, [*outside, *inside], duration, rtol=tolerance, atol=tolerance)
+    solver = RK45(flow, 0.0, [*outside, *inside], duration, rtol=TOLERANCE, atol=TOLERANCE)
     times, evaluations = [0.0], [solver.nfev]
     while solver.status == "running" and solver.nfev < most:
         solver.step()
         times.append(float(solver.t))
         evaluations.append(int(solver.nfev))
-    return Effort(method, np.array(times), np.array(evaluations), solver.status == "finished")
+    return Effort(np.array(times), np.array(evaluations), solver.status == "finished")

@@ -245,7 +245,7 @@ def compare(
     coordinates : sequence of str, optional
         Such as ("y3",), whose absolute errors are to stay within the tolerance instead.
     columns : mapping of names to functions of a run, optional
-        Further numbers, such as ``{"over_bound": over_bound(form)}``, or `percept_obs.studies.consistency.CLAIMS`.
+        Further numbers, such as ``{"over_bound": over_bound(form)}``.
     **settings
         Passed to `track`, such as ``hold`` and ``believed``.
 
@@ -407,17 +407,15 @@ def error_at(run: Run, after: float, reference: str) -> float:
 
 
 @checked
-def over_bound(form: PartitionedSystem, tolerance: float = TOLERANCE) -> Callable[[Run], float]:
+def over_bound(form: PartitionedSystem) -> Callable[[Run], float]:
     """Return a column for `compare`: the distance's rms error over its Cramer-Rao bound, in a run's second half.
 
-    It is infinite for a run whose distance does not stay within the tolerance at the end.
+    It is infinite for a run whose distance does not stay within 10 % at the end.
 
     Parameters
     ----------
     form : PartitionedSystem
         Which outputs are measured.
-    tolerance : float
-        Relative.
 
     Returns
     -------
@@ -458,7 +456,7 @@ def over_bound(form: PartitionedSystem, tolerance: float = TOLERANCE) -> Callabl
             bound = cramer_rao(run.recording, form).relative
             known.append((run.recording, bound))
         late = (run.elapsed >= run.elapsed[-1] / 2) & np.isfinite(run.distance)
-        if not late.any() or not math.isfinite(run.settling_time(tolerance)):
+        if not late.any() or not math.isfinite(run.settling_time()):
             return math.inf
         error = (run.distance / run.recording.reference("truth") - 1)[late] / bound[late]
         return math.sqrt(float(np.mean(error**2)))

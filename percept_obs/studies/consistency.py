@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -15,10 +14,13 @@ from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import diverged
 from percept_obs.validation import checked
 
-__all__ = ["CLAIMS", "Consistency", "check_consistency", "claimed_distance", "claimed_interval"]
+__all__ = ["Consistency", "check_consistency"]
 
 DEVIATIONS = 2.0
 """Claimed standard deviations to either side of an estimate: 95 % of a normal distribution."""
+
+CONFIDENCE = 0.95
+"""Probability of the two-sided intervals of the test."""
 
 JUDGEMENTS = MappingProxyType(
     {
@@ -30,93 +32,26 @@ JUDGEMENTS = MappingProxyType(
 """Meaning of each judgement."""
 
 
-@checked
 def claimed_interval(run: Run) -> tuple[Array, Array]:
-    """Return ends of the interval of two claimed standard deviations around the estimate, of shape (K, n) each.
+    """Ends of the interval of two claimed standard deviations around the estimate, of shape (K, n) each.
 
     They are NaN where the run has diverged.
-
-    Parameters
-    ----------
-    run : Run
-        Of an observer that claims a covariance.
-
-    Raises
-    ------
-    ValueError
-        If the observer claims no covariance.
-
-    See Also
-    --------
-    claimed_distance : Of the distance.
-    check_consistency : Tests the claim.
-
-    Examples
-    --------
-    >>> from percept_obs import PerspectiveSystem, affine, ekf, pinhole, record, scenarios, track
-    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
-    >>> low, high = claimed_interval(track(record(scenarios.ma2005_eq35(), 2), ekf(form)))
-    >>> bool((low <= high).all())
-    True
     """
     variances = np.diagonal(run.covariance, axis1=1, axis2=2)
     spread = DEVIATIONS * np.sqrt(np.maximum(variances, 0))  # round-off may leave one a little below zero
     return run.estimate - spread, run.estimate + spread
 
 
-@checked
 def claimed_distance(run: Run) -> tuple[Array, Array]:
-    """Return ends of the `claimed_interval` of the distance in metres, of shape (K,) each.
+    """Ends of the `claimed_interval` of the distance in metres, of shape (K,) each.
 
     An interval of the inverse distance that reaches zero stands for distances without an upper end.  The high one is
     infinite where the interval reaches zero, and both are where it is not positive at all; they are NaN where the run
     has diverged.
-
-    Parameters
-    ----------
-    run : Run
-        Of an observer that claims a covariance.
-
-    Raises
-    ------
-    ValueError
-        If the observer claims no covariance.
-
-    See Also
-    --------
-    claimed_interval : Of the coordinates.
-
-    Examples
-    --------
-    >>> from percept_obs import PerspectiveSystem, affine, ekf, pinhole, record, scenarios, track
-    >>> form = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
-    >>> nearest, farthest = claimed_distance(track(record(scenarios.ma2005_eq35(), 2), ekf(form)))
-    >>> bool((nearest <= farthest).all())
-    True
     """
     low, high = (end[:, -1] for end in claimed_interval(run))
     nearest, farthest = (np.divide(1, end, out=np.full_like(end, np.inf), where=~(end <= 0)) for end in (high, low))
     return nearest, farthest
-
-
-def _mean_nis(run: Run) -> float:
-    claims = run.observer.covariance is not None and run.observer.equations.update
-    return float(np.nanmean(run.nis)) / len(run.observer.form.x1) if claims else math.nan
-
-
-def _within_claim(run: Run) -> float:
-    if run.observer.covariance is None:
-        return math.nan
-    nearest, farthest = claimed_distance(run)
-    distance = run.recording.distance
-    return float(np.mean(((nearest <= distance) & (distance <= farthest))[np.isfinite(distance)]))
-
-
-CLAIMS = MappingProxyType({"nis": _mean_nis, "within_claim": _within_claim})
-"""Columns for `compare`: mean NIS over the number of outputs, share of the true distances within the claimed interval.
-
-1 and 0.95 are expected; both are NaN for an observer that claims nothing.
-"""
 
 
 @checked
@@ -137,8 +72,6 @@ class Consistency:
         Number of measured outputs, the expected mean.
     samples : int
         N, the number of samples that a moving average holds.
-    confidence : float
-        Probability of the two-sided intervals.
     whitened : array of shape (K, outputs)
         See `Run.whitened`.
 
@@ -150,7 +83,7 @@ class Consistency:
     Examples
     --------
     >>> white = np.random.default_rng(0).normal(size=(500, 2))
-    >>> found = Consistency(np.arange(500.0), (white**2).sum(axis=1), 2, 50, 0.95, white)
+    >>> found = Consistency(np.arange(500.0), (white**2).sum(axis=1), 2, 50, white)
     >>> found.judgement, found.white
     ('consistent', True)
     """
@@ -159,7 +92,6 @@ class Consistency:
     nis: Array
     outputs: int
     samples: int
-    confidence: float
     whitened: Array
 
     @property
@@ -178,10 +110,10 @@ class Consistency:
         return float(self.nis.mean())
 
     def interval(self, count: int) -> tuple[float, float]:
-        """Interval of the mean of `count` NIS, with the probability `confidence`."""
+        """Interval of the mean of `count` NIS, with the probability 0.95."""
         from scipy.stats import chi2
 
-        low, high = chi2.interval(self.confidence, count * self.outputs)
+        low, high = chi2.interval(CONFIDENCE, count * self.outputs)
         return float(low) / count, float(high) / count
 
     @property
@@ -191,10 +123,10 @@ class Consistency:
 
     @property
     def white(self) -> bool:
-        """True if the autocorrelation lies in its interval for white noise, with the probability `confidence`."""
+        """True if the autocorrelation lies in its interval for white noise, with the probability 0.95."""
         from scipy.stats import norm
 
-        return bool(abs(self.autocorrelation) <= norm.ppf((1 + self.confidence) / 2) / np.sqrt(self.whitened.size))
+        return bool(abs(self.autocorrelation) <= norm.ppf((1 + CONFIDENCE) / 2) / np.sqrt(self.whitened.size))
 
     @property
     def judgement(self) -> str:
@@ -209,7 +141,7 @@ class Consistency:
         return (
             f"{self.judgement}: {JUDGEMENTS[self.judgement]}. The mean NIS of {len(self.nis)} samples is "
             f"{self.mean:.3g}; {self.outputs} is expected, and {low:.3g} to {high:.3g} with a probability of "
-            f"{100 * self.confidence:g} %"
+            f"{100 * CONFIDENCE:g} %"
         )
 
     def verdict(self) -> str:
@@ -228,7 +160,7 @@ class Consistency:
 
 
 @checked
-def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidence: float = 0.95) -> Consistency:
+def check_consistency(run: Run, samples: int = 50, after: float = 0.0) -> Consistency:
     """Return a test whether a filter's innovations are as large as it claims.
 
     It needs no truth, so it works on real data.  It cannot find errors that leave no trace in the innovations, such as
@@ -242,8 +174,6 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
         Number of samples in a moving average, from 1 to that of the run.
     after : float
         Seconds to leave out at the beginning, such as a transient that the linearisation does not cover.
-    confidence : float
-        Probability of the two-sided intervals, between 0 and 1.
 
     Returns
     -------
@@ -273,8 +203,6 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     >>> check_consistency(run, after=5).verdict().partition(".")[0]
     'consistent: the innovations are as large as the filter claims'
     """
-    if not 0 < confidence < 1:
-        raise ValueError(f"the confidence is {confidence}; it must lie between 0 and 1")
     if not after >= 0:
         raise ValueError(f"after is {after} s; it must not be negative")
     if run.diverged_at is not None:
@@ -285,4 +213,4 @@ def check_consistency(run: Run, samples: int = 50, after: float = 0.0, confidenc
     if not 1 <= samples <= there:
         raise ValueError(f"a moving average of {samples} samples was asked for; there are {there} after {after} s")
     outputs = len(run.observer.form.x1)
-    return Consistency(run.time[counted], nis[counted], outputs, samples, confidence, run.whitened[counted])
+    return Consistency(run.time[counted], nis[counted], outputs, samples, run.whitened[counted])

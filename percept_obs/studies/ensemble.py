@@ -1,25 +1,20 @@
-"""Ensembles: one scenario and one observer, run over whatever may vary, chunk by chunk, and kept on the way."""
+"""Ensembles: one scenario and one observer, run over whatever may vary, chunk by chunk."""
 
 from __future__ import annotations
 
-import copy
 import json
 import math
-import os
 from collections.abc import Generator, Mapping, Sequence
-from concurrent.futures import Executor, Future, ThreadPoolExecutor, as_completed
-from contextlib import closing, contextmanager
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import closing
 from dataclasses import replace
-from hashlib import sha256
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from percept_obs.compile import Array, Language, choose, source
+from percept_obs.compile import Array, Language, choose
 from percept_obs.compile.batch import compiled
 from percept_obs.compile.integrator import LONGEST_STEP
-from percept_obs.observability import cramer_rao
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Camera, Scenario, record
 from percept_obs.recording.many import numbers_of
@@ -27,21 +22,16 @@ from percept_obs.studies.plan import CAMERA, DONE, NOT_RUN, OUTCOMES, STATISTICS
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT
 from percept_obs.tracking.following import DoesNotFit, named_start, track
-from percept_obs.tracking.grid import Hold
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import Kind, bar, checked, limit, needed, positive, warn, workers
+from percept_obs.validation import bar, checked, limit, needed, positive, warn, workers
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Start = Mapping[str, float] | Sequence[float] | None
-Client = Annotated[Any, Kind("a client of Dask", lambda c: c is None or hasattr(c, "get_executor"), "Client()")]
 
 CHUNK = 2048
-"""Runs that are computed, and stored, together unless asked otherwise."""
-
-PROBES = 17
-"""Times at which a motion that varies enters the fingerprint of an ensemble."""
+"""Runs that are computed together unless asked otherwise."""
 
 MOST_RUNS = 10_000_000
 """Runs that one ensemble may have: about 1 GiB of statistics."""
@@ -60,16 +50,11 @@ def ensemble(
     duration: float | None = None,
     camera: Camera | None = None,
     start: Start = None,
-    hold: Hold = "zero",
     believed: Motion | None = None,
     step: float = LONGEST_STEP,
     tolerance: float = TOLERANCE,
     after: float = 0.0,
-    coordinates: Sequence[str] = (),
-    prior: Mapping[str, float] | None = None,
     language: Language | None = None,
-    client: Client = None,
-    store: str | os.PathLike[str] | None = None,
     chunk: int = CHUNK,
 ) -> Any:
     """Record a scenario and follow it, for every combination of what varies and every seed.
@@ -92,47 +77,34 @@ def ensemble(
         Seeds of the noise, or how many of them, from 0 on.
     duration, camera : as in record
         Seconds, the scenario's own when left out, and a camera.
-    start, hold, believed, step : as in track
+    start, believed, step : as in track, which holds the last sample
         A true motion that varies is believed in unless `believed` is given.
     tolerance : float
-        Bound on the relative error of the distance, or on the absolute errors of the `coordinates`; see `Run.outcome`.
+        Bound on the relative error of the distance; see `Run.outcome`.
     after : float
-        Seconds from which on errors count for their root mean square, their largest value, NEES and NIS.
-    coordinates : sequence of str, optional
-        Such as ("y3",), whose absolute errors are to stay within the tolerance instead.
-    prior : mapping of names to variances, optional
-        What is known before the first sample, see `cramer_rao`; with it the Dataset has the bound and the efficiency.
-        An empty one stands for the variance that the extended Kalman filter begins with.
+        Seconds from which on errors count for their root mean square and their largest value.
     language : "python" or "numba", optional
         See `solve`; Python's runs in numpy.
-    client : distributed.Client, optional
-        Of a Dask cluster, whose workers share the runs; the threads of this machine when left out.
-    store : path, optional
-        A Zarr store that keeps what is done chunk by chunk, and then the result.  The same call on a store that was
-        left behind goes on where it stopped.
     chunk : int
-        Runs that are computed and stored together.
+        Runs that are computed together.
 
     Returns
     -------
     xarray.Dataset
         With the dimension "seed" and those of `over`: status, outcome, settling_time (s, infinite if it has not
         converged), judged (what the tolerance bounds, at the end), final, rms, worst (errors of the inverse distance in
-        1/m), resets, diverged_at (s, infinite if it does not), for an observer with a covariance the means nees and
-        nis, and with a prior the bound of rms (1/m) and, without the dimension "seed", the efficiency: root mean
-        squares of both over the seeds, one by the other, 1 at best without bias.  `status` and `outcome` are numbers
-        whose meanings are among their attributes.  A point that does not stay in front of the camera has the status
-        "not_in_front" and NaN, as the bound has without noise.  ``to_netcdf`` and ``to_zarr`` keep it with all
-        settings.
+        1/m), resets, diverged_at (s, infinite if it does not).  `status` and `outcome` are numbers whose meanings are
+        among their attributes.  A point that does not stay in front of the camera has the status "not_in_front" and
+        NaN.  ``to_netcdf`` keeps it with all settings.
 
     Raises
     ------
     ValueError
-        If nothing of the name can vary, a value is out of range, or the store holds another ensemble.
+        If nothing of the name can vary, or a value is out of range.
     DoesNotFit
         If the observer cannot follow the scenario.
     ModuleNotFoundError
-        If xarray, or for a store zarr, is not installed.
+        If xarray is not installed.
 
     Warns
     -----
@@ -147,7 +119,7 @@ def ensemble(
     -----
     Products and sums are rounded once in machine code, so that a run differs from `track`'s by about 1e-14 relative,
     more only where a reset or a switch is met by a hair.  The same seeds give the same numbers, bit for bit, in any
-    chunks, threads or workers on processors of one kind.
+    chunks and threads on processors of one kind.
 
     Examples
     --------
@@ -157,7 +129,7 @@ def ensemble(
     >>> round(found.settling_time.sel(gain=10.0, seed=0).item(), 2)
     1.91
     """
-    needed(*(("course", "xarray") if store is None else ("cluster", "xarray", "zarr")))
+    needed("course", "xarray")
     camera, motion = camera or scenario.camera, believed or scenario.motion
     duration = scenario.duration if duration is None else float(duration)
     limit(float(seeds) if isinstance(seeds, int | np.integer) else len(seeds), "seeds", "take fewer", MOST_RUNS)
@@ -182,27 +154,18 @@ def ensemble(
         duration,
         camera,
         named_start(start, observer.form.coordinates),
-        hold,
         motion,
         step,
         tolerance,
         after,
-        tuple(coordinates),
-        None if prior is None else tuple((name, float(value)) for name, value in prior.items()),
         choose(language, runs * steps),
     )
     _refuse_values(plan)
-    about = _settings(plan)
-    shape = runs, len(plan.statistics)
-    with open_store(store, about["fingerprint"], shape, chunk) as stored:
-        results = np.zeros(shape) if stored is None else stored[:]
-        run_missing(plan, results, chunk, client, stored)
-        found = _dataset(plan, results).assign_attrs(
-            {name: value if isinstance(value, str | float) else json.dumps(value) for name, value in about.items()}
-        )
-        if store is not None:
-            found.to_zarr(os.fspath(store), mode="a", consolidated=False)
-    return found
+    results = np.zeros((runs, len(STATISTICS)))
+    _run_all(plan, results, chunk)
+    about = _settings(plan).items()
+    attributes = {name: value if isinstance(value, str | float) else json.dumps(value) for name, value in about}
+    return _dataset(plan, results).assign_attrs(attributes)
 
 
 def units(scenario: Scenario, observer: Observer, believed: Motion) -> dict[str, str]:
@@ -241,22 +204,20 @@ def _refuse_values(plan: Plan) -> None:
         raise ValueError("an ensemble knows no field of view; leave it out of the camera, or give it a reach")
     short = min(camera.period, plan.step)  # the point need not stay in front of the camera for longer
     first = record(scenario, short, replace(camera, period=short))
-    run = track(first, observer, plan.start, plan.hold, plan.believed, plan.step, "python")
-    run.outcome(plan.tolerance, *plan.coordinates)
-    if plan.prior is not None:
-        cramer_rao(first, observer.form, dict(plan.prior), ends["noise"][1] ** 2 if "noise" in ends else None)
+    run = track(first, observer, plan.start, believed=plan.believed, step=plan.step, language="python")
+    run.outcome(plan.tolerance)
     if not 0 <= plan.after <= plan.duration:
         raise ValueError(f"after is {plan.after} s; errors count from then on, within the {plan.duration} s of a run")
 
 
 def _settings(plan: Plan) -> dict[str, Any]:
-    """All settings of an ensemble as text and numbers, with a fingerprint of them, the grid and the equations."""
+    """All settings of an ensemble as text and numbers."""
     scenario, observer = plan.scenario, plan.observer
 
     def by_name(values: Mapping[Any, float]) -> dict[str, float]:
         return {symbol.name: value for symbol, value in values.items()}
 
-    about: dict[str, Any] = {
+    return {
         "scenario": scenario.name,
         "position": list(scenario.position),
         "motion": by_name(scenario.motion.values),
@@ -269,27 +230,18 @@ def _settings(plan: Plan) -> dict[str, Any]:
         "duration": plan.duration,
         "camera": str(plan.camera),
         "start": dict(plan.start),
-        "hold": plan.hold,
         "step": plan.step,
         "tolerance": plan.tolerance,
         "after": plan.after,
-        "judged_coordinates": list(plan.coordinates),
-        "prior": None if plan.prior is None else dict(plan.prior),
         "language": plan.language,
     }
-    times = np.linspace(0, plan.duration, PROBES)
-    motions = [(repr(m.A), repr(m.b), m.known(times).tolist()) for m in (scenario.motion, plan.believed)]
-    grid = [(str(name), each.dims, each.values.tolist()) for name, each in plan.grid.coords.items()]
-    equations = [source(observer.equations), repr(observer.estimate), repr(observer.start), repr(scenario.surface)]
-    fingerprint = sha256(json.dumps([about, motions, grid, equations]).encode()).hexdigest()
-    return about | {"fingerprint": fingerprint}
 
 
 def _dataset(plan: Plan, results: Array) -> xr.Dataset:
     """Results as variables on the grid, from an array of shape (number of runs, number of statistics)."""
     dimensions, shape = tuple(plan.shape), tuple(plan.shape.values())
     done, variables = results[:, 0] == DONE, {}
-    for name, column in zip(plan.statistics, results.T, strict=True):
+    for name, column in zip(STATISTICS, results.T, strict=True):
         unit, meaning = STATISTICS[name]
         about: dict[str, Any] = {"units": unit, "long_name": meaning}
         values = column if name == "status" else np.where(done, column, np.nan)
@@ -297,97 +249,30 @@ def _dataset(plan: Plan, results: Array) -> xr.Dataset:
             values = np.where(np.isfinite(values), values, -1).astype(np.int8)
             about |= {"flag_values": np.arange(len(flags), dtype=np.int8), "flag_meanings": " ".join(flags)}
         variables[name] = (dimensions, values.reshape(shape), about)
-    found = plan.grid.assign(variables)
-    if plan.prior is not None:
-        error, least = ((found[name] ** 2).mean("seed", skipna=False) ** 0.5 for name in ("rms", "bound"))
-        about = {"units": "1", "long_name": "rms error over its bound, both in the mean square over the seeds"}
-        found["efficiency"] = (error / least).assign_attrs(about)
-    return found
+    return plan.grid.assign(variables)
 
 
-@contextmanager
-def open_store(
-    path: str | os.PathLike[str] | None, fingerprint: str, shape: tuple[int, int], chunk: int
-) -> Generator[Any]:
-    """Open the array of statistics in a Zarr store, shape (number of runs, number of statistics), None without a path.
-
-    The store is this ensemble's alone until it is left; ValueError if it is another's, or something else.
-    """
-    if path is None:
-        yield None
-        return
-    import sqlite3
-
-    import zarr
-
-    store = Path(path)
-    taken = any(store.iterdir()) if store.is_dir() else store.exists()
-    if not os.fspath(path) or (taken and not (store / "zarr.json").exists()):
-        raise ValueError(f"the store {os.fspath(path)!r} is no Zarr store; name a new folder, such as ensemble.zarr")
-    store.parent.mkdir(parents=True, exist_ok=True)
-    # The system gives a lock of a database back when its process ends, however it ends.
-    try:
-        lock = sqlite3.connect(f"{store}.lock", timeout=0, check_same_thread=False)
-        lock.execute("BEGIN EXCLUSIVE")
-    except sqlite3.OperationalError as error:
-        raise ValueError(
-            f"the store {store} is not free ({error}): another ensemble writes to it now, or its folder cannot be "
-            "written to; wait, or name a new one"
-        ) from None
-    try:
-        group: Any = zarr.open_group(store, mode="a")
-        stored = group.attrs.get("fingerprint")
-        if stored not in (None, fingerprint) or (stored is None and len(list(group))):
-            raise ValueError(
-                f"the store {store} holds something else than this ensemble; name a new one, or call with the "
-                "settings that it was begun with"
-            )
-        if stored is None:
-            group.create_array("progress/runs", shape=shape, chunks=(min(chunk, shape[0]), shape[1]), dtype=float)
-            group.attrs["fingerprint"] = fingerprint
-        yield group["progress/runs"]
-    finally:
-        lock.close()
-        Path(f"{store}.lock").unlink(missing_ok=True)
-
-
-def run_missing(plan: Plan, results: Array, chunk: int, client: Any = None, stored: Any = None) -> None:
-    """Compute the runs that have no results yet, in chunks, and keep them in a store; warn if interrupted.
-
-    With a client Dask gives another worker what a worker that dies had begun.
-    """
-    missing = results[:, 0] == NOT_RUN
+def _run_all(plan: Plan, results: Array, chunk: int) -> None:
+    """Compute all runs in chunks; warn if interrupted."""
     chunks = [slice(begin, min(begin + chunk, len(results))) for begin in range(0, len(results), chunk)]
-    todo = [each for each in chunks if missing[each].any()]
-    if client is None:
-        compiled(plan.loop, plan.language)  # here and now, where numba may set warning filters
-    if client or workers() > 1:
-        computed = _concurrent(plan, todo, client)
-    else:
-        computed = ((each, plan.compute(each)) for each in todo)
-    with closing(computed), bar(None, "runs", len(results), initial=int((~missing).sum()), unit="run") as progress:
+    compiled(plan.loop, plan.language)  # here and now, where numba may set warning filters
+    computed = _concurrent(plan, chunks) if workers() > 1 else ((each, plan.compute(each)) for each in chunks)
+    with closing(computed), bar(None, "runs", len(results), unit="run") as progress:
         try:
             for each, found in computed:
                 results[each] = found
-                if stored is not None:
-                    stored[each] = found
                 progress.update(len(found))
         except KeyboardInterrupt:
             missing = results[:, 0] == NOT_RUN
             warn(Unfinished(f"interrupted: {int(missing.sum())} of {len(results)} runs are missing"))
 
 
-def _concurrent(plan: Plan, todo: Sequence[slice], client: Any) -> Generator[tuple[slice, Array]]:
-    """Yield chunks as they are done, on the threads of this machine or on a cluster."""
-    executor: Executor = client.get_executor() if client else ThreadPoolExecutor(workers())
-    # a task's result, unlike scattered data, is made again when the worker that holds it dies
-    there = client.submit(copy.copy, plan, pure=False) if client else plan
-    begun: dict[Future[Array], slice] = {}
+def _concurrent(plan: Plan, todo: Sequence[slice]) -> Generator[tuple[slice, Array]]:
+    """Yield chunks as threads have done them."""
+    executor = ThreadPoolExecutor(workers())
     try:
-        begun |= {executor.submit(Plan.compute, there, each): each for each in todo}
+        begun = {executor.submit(plan.compute, each): each for each in todo}
         for future in as_completed(begun):
             yield begun.pop(future), future.result()
     finally:
-        for future in begun:
-            future.cancel()
-        executor.shutdown()
+        executor.shutdown(cancel_futures=True)

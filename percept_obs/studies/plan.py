@@ -13,20 +13,17 @@ import sympy as sp
 
 from percept_obs.compile import Array, Indices, Language, vectorised
 from percept_obs.compile.batch import BATCH, COLUMNS, Batch, BatchLoop, MovingPoint, Statistics, run_batch
-from percept_obs.compile.integrator import by_step, instants, step_grid
-from percept_obs.observability import cramer_rao
+from percept_obs.compile.integrator import instants, step_grid
 from percept_obs.observers.base import Observer
 from percept_obs.observers.inversion import elapsed, first_innovation
 from percept_obs.observers.parts import first_seen, hats
-from percept_obs.recording import Camera, Scenario, record
+from percept_obs.recording import Camera, Scenario
 from percept_obs.recording.many import numbers_of, with_numbers
 from percept_obs.recording.reckoning import transitions
 from percept_obs.recording.simulation import LONGEST_STEP_SHARE
-from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion, coefficients
 from percept_obs.system.signal import from_the_start
 from percept_obs.system.surfaces import POINT, BehindCamera
-from percept_obs.tracking.grid import Hold
 from percept_obs.tracking.verdict import stays
 from percept_obs.validation import numbers
 
@@ -53,12 +50,9 @@ STATISTICS = MappingProxyType(
         "worst": ("1/m", "its largest value after the transient"),
         "resets": ("1", "number of resets"),
         "diverged_at": ("s", "time at which the estimate grew beyond all bounds"),
-        "bound": ("1/m", "least rms error after the transient that the noise leaves to any unbiased observer"),
-        "nees": ("1", "mean normalised estimation error squared after the transient"),
-        "nis": ("1", "mean normalised innovation squared after the transient"),
     }
 )
-"""Unit and meaning of each statistic; the bound needs a prior, NEES a covariance, NIS a measurement update as well."""
+"""Unit and meaning of each statistic of a run."""
 
 CAMERA = {"noise": "1", "period": "s", "dropout": "1"}
 """Settings of a camera that can vary, with units; the noise is its bound or its standard deviation."""
@@ -72,7 +66,8 @@ SAFETY_FACTOR = 4.0
 Columns = Mapping[str, Array]
 """Values of what varies, one for each of L runs, by name; always with "seed"."""
 
-Variances = tuple[tuple[str, float], ...]
+Numbers = tuple[tuple[str, float], ...]
+"""Numbers of a scenario that vary, by their names."""
 
 
 def grid_of(over: Mapping[str, Any], seeds: Array, units: Mapping[str, str]) -> xr.Dataset:
@@ -109,26 +104,16 @@ class Plan:
     duration: float
     camera: Camera
     start: Mapping[str, float]
-    hold: Hold
     believed: Motion
     step: float
     tolerance: float
     after: float
-    coordinates: tuple[str, ...]
-    prior: Variances | None
     language: Language
 
     @cached_property
     def shape(self) -> dict[str, int]:
         """Lengths of the dimensions in the order of the runs' numbers, the seed first."""
         return {name: self.grid.sizes[name] for each in self.grid.coords.values() for name in each.dims}
-
-    @cached_property
-    def statistics(self) -> tuple[str, ...]:
-        """Names of the statistics of every run, its status first."""
-        means = ("nees", "nis")[: len(accumulated(self.observer).means)]
-        missing = {"nees", "nis", "bound"} - {*means, *(() if self.prior is None else ("bound",))}
-        return tuple(name for name in STATISTICS if name not in missing)
 
     @cached_property
     def scale(self) -> Array:
@@ -149,9 +134,9 @@ class Plan:
         moving = MovingPoint(POINT, surface.parameters, (*image, 1 / surface.distance), surface.distance)
         return BatchLoop(
             self.observer.equations,
-            accumulated(self.observer, self.coordinates, self.scale.tolist()),
+            accumulated(self.observer, self.scale.tolist()),
             moving if self.scenes and self.scenario.motion.values else None,
-            held=self.hold != "zero",
+            held=False,
             varying=not self.believed.values,
             noises_alike=self.grid.sizes["seed"] == 1 and not {"noise", "dropout"} & varied,
             truths_alike=not self.scenes,
@@ -165,7 +150,7 @@ class Plan:
             str(name): each.values[tuple(places[along] for along in each.dims)]
             for name, each in self.grid.coords.items()
         }
-        found = np.empty((chunk.stop - chunk.start, len(self.statistics)))
+        found = np.empty((chunk.stop - chunk.start, len(STATISTICS)))
         periods = columns.get("period", np.full(len(found), self.camera.period))
         for period in np.unique(periods).tolist():
             same, camera = np.flatnonzero(periods == period), replace(self.camera, period=period)
@@ -211,7 +196,6 @@ class Plan:
             arriving,
             elapsed,
             camera.reach,
-            self._held(columns, noise[film], time, grid) if loop.held else None,
         )
         late = int(np.argmax(from_the_start(elapsed, self.after)))
         sums = run_batch(loop, batch, self.tolerance, late, self.language)
@@ -219,9 +203,7 @@ class Plan:
         if loop.moving:
             in_front = self._in_front(columns, sums, turning, time)
         found = statistics_of(sums, elapsed, grid - grid[0], late)
-        if self.prior is not None:
-            found["bound"] = self._bounds(columns, camera, self.prior)
-        rest = [np.where(in_front, found[name], np.nan) for name in self.statistics[1:]]
+        rest = [np.where(in_front, values, np.nan) for values in found.values()]
         return np.stack([np.where(in_front, DONE, NOT_IN_FRONT), *rest], axis=-1)
 
     def _truths(self, columns: Columns, time: Array) -> tuple[Indices, Array]:
@@ -253,20 +235,6 @@ class Plan:
             scene = tuple((name, float(columns[name][k])) for name in self.scenes)
             in_front[k] = np.isfinite(_coordinates(self.scenario, scene, time.tobytes())).all()
         return np.asarray(in_front)
-
-    def _bounds(self, columns: Columns, camera: Camera, prior: Variances) -> Array:
-        """Least error of each run, shape (L,); the seed matters only where samples are lost."""
-        varied = [name for name in ("noise", "dropout") if name in columns]
-        seed = ["seed"] if camera.dropout or "dropout" in columns else []
-        rows, which = _distinct(columns, [*self.scenes, *varied, *seed])
-        found = []
-        for row in rows.tolist():
-            values = dict(zip([*self.scenes, *varied, *seed], row, strict=True))
-            scene = tuple((name, values[name]) for name in self.scenes)
-            taken = camera_with(camera, {name: values[name] for name in varied})
-            run = self.duration, taken, int(values.get("seed", 0))
-            found.append(_least_error(self.scenario, scene, *run, self.observer.form, prior, self.after))
-        return np.array(found)[which]
 
     def _noise(self, columns: Columns, camera: Camera, samples: int) -> tuple[Array, Indices]:
         """Noise of measured outputs, NaN where a sample is lost, shape (R, K, m), and the index of each run's."""
@@ -320,54 +288,15 @@ class Plan:
         start = vectorised(symbols, observer.start)(*first.T, *gains.T, *known.T, *estimates, *seen)
         return np.stack(start, axis=-1), np.array([name in given for name in form.measured])
 
-    def _held(self, columns: Columns, noise: Array, time: Array, grid: Array) -> Array:
-        """Outputs at the instants of the steps, shape (L, N, EACH + 1, m), if the last sample is not held."""
-        within = instants(grid)
-        scene, truth = self._truths(columns, time if self.hold == "first" else within)
-        outputs = truth[scene][..., list(self.loop.statistics.measured)]
-        if self.hold == "first":
-            seen = outputs + noise
-            outputs = np.stack([[_between(within, time, y) for y in each.T] for each in seen]).swapaxes(1, 2)
-        return np.stack([by_step(each) for each in outputs])
-
 
 @lru_cache(maxsize=256)
-def _coordinates(scenario: Scenario, numbers: Variances, times: bytes) -> Array:
+def _coordinates(scenario: Scenario, numbers: Numbers, times: bytes) -> Array:
     """True coordinates of a variant of a scenario, NaN if its point does not stay in front of the camera."""
     at = np.frombuffer(times)
     try:
         return with_numbers(scenario, **dict(numbers)).coordinates(at)
     except BehindCamera:
         return np.full((len(at), len(scenario.view.coordinates)), np.nan)
-
-
-@lru_cache(maxsize=4096)
-def _least_error(
-    scenario: Scenario,
-    numbers: Variances,
-    duration: float,
-    camera: Camera,
-    seed: int,
-    form: PartitionedSystem,
-    prior: Variances,
-    after: float,
-) -> float:
-    """Root mean square over time of the Cramer-Rao bound of the inverse distance in 1/m; NaN without noise."""
-    if not camera.noise.variance:
-        return np.nan
-    try:
-        recording = record(with_numbers(scenario, **dict(numbers)), duration, camera, seed)
-    except BehindCamera:
-        return np.nan
-    bound = cramer_rao(recording, form, dict(prior))
-    late = from_the_start(bound.elapsed, after)
-    return float(np.sqrt(np.mean(bound.of(form.coordinates[-1].name)[late] ** 2)))
-
-
-def _between(times: Array, known: Array, values: Array) -> Array:
-    """Values on the lines between those that were not lost."""
-    there = np.isfinite(values)
-    return np.interp(times, known[there], values[there]) if there.any() else np.full(len(times), np.nan)
 
 
 def _distinct(columns: Columns, names: Sequence[str]) -> tuple[Array, Indices]:
@@ -383,65 +312,35 @@ def _column(columns: Columns, name: str, value: float) -> Array:
     return columns[name] if name in columns else np.full(len(columns["seed"]), value)
 
 
-def accumulated(observer: Observer, coordinates: Sequence[str] = (), scale: Sequence[float] = ()) -> Statistics:
-    """Expressions to accumulate during a run: relative error of the distance, or absolute errors of coordinates.
+def accumulated(observer: Observer, scale: Sequence[float]) -> Statistics:
+    """Expressions to accumulate during a run, such as the relative error of the distance.
 
     The scale has the factors of the coordinates by the unit of length in which the observer runs, see `Recording`.
     """
     form, units = observer.form, [sp.S.One if factor == 1 else sp.Float(factor) for factor in scale]
-    units = units or [sp.S.One for _ in form.coordinates]
     estimate = {x: e / unit for x, e, unit in zip(form.coordinates, observer.estimate, units, strict=True)}
     truth = {symbol: sp.Symbol(f"true_{symbol.name}", real=True) for symbol in form.coordinates}
     inverse = form.coordinates[-1]
-    named = [symbol for symbol in form.coordinates if symbol.name in coordinates]
-    samples = tuple(sp.Symbol(f"sample_{x.name}", real=True) for x in form.x1)
-    places = [form.coordinates.index(x) for x in form.x1]
-    means = []
-    if observer.covariance is not None:
-        into = sp.diag(*(1 / unit for unit in units))
-        P = into * sp.Matrix(observer.covariance) * into
-        means.append(_normalised(P, [truth[s] - estimate[s] for s in form.coordinates]))  # NEES
-        variance = {gain.name: gain.symbol for gain in observer.gains}.get("noise_variance")
-        if variance is not None and observer.equations.update:
-            residual = [sample - estimate[x] for sample, x in zip(samples, form.x1, strict=True)]
-            # the residual after an update has the covariance R - P; see `Run.whitened`
-            means.append(_normalised(variance * sp.eye(len(places)) - P.extract(places, places), residual))  # NIS
     return Statistics(
         truth=tuple(truth.values()),
         elapsed=elapsed,
         begun=tuple(first_innovation(form)) if observer.unobservable else (),
         first=tuple(x - estimate[x] for x in form.x1) if observer.unobservable else (),
         hidden=sp.Or(*(where.condition for where in observer.unobservable)),
-        judged=tuple(sp.Abs(truth[s] - estimate[s]) for s in named)
-        or (sp.Abs(truth[inverse] / estimate[inverse] - 1),),
-        behind=sp.false if named else sp.Le(estimate[inverse], 0),
+        judged=(sp.Abs(truth[inverse] / estimate[inverse] - 1),),
+        behind=sp.Le(estimate[inverse], 0),
         error=sp.Abs(truth[inverse] - estimate[inverse]),
-        means=tuple(means),
-        samples=samples if observer.covariance is not None and observer.equations.update else (),
-        measured=tuple(places),
+        measured=tuple(form.coordinates.index(x) for x in form.x1),
     )
 
 
-def _normalised(P: sp.Matrix, e: list[sp.Expr]) -> sp.Expr:
-    """e^T P^-1 e, by Gaussian elimination, whose expressions are shorter than those of an inverse."""
-    P, e, total = P.as_mutable(), list(e), sp.S.Zero
-    for k in range(len(e)):
-        total += e[k] ** 2 / P[k, k]
-        for i in range(k + 1, len(e)):
-            share = P[i, k] / P[k, k]
-            e[i] -= share * e[k]
-            for j in range(k + 1, len(e)):
-                P[i, j] -= share * P[k, j]
-    return total
-
-
 def statistics_of(sums: Array, elapsed: Array, grid: Array, late: int) -> dict[str, Array]:
-    """Statistics of L runs, by their names in `STATISTICS`, from sums of `percept_obs.compile.batch.run_batch`.
+    """Statistics of L runs but their status, in the order of `STATISTICS`, from sums of `run_batch`.
 
     Seconds elapsed are those from the first sample to each and, of the grid, to the ends of the steps; `late` is the
     first sample whose error counts.
     """
-    column = dict(zip(COLUMNS, sums.T, strict=False))
+    column = dict(zip(COLUMNS, sums.T, strict=True))
     last, judged, squares = len(elapsed) - 1, column["judged"], column["squares"]
     outside, diverged = column["outside"].astype(int), column["diverged"].astype(int)
     settled = np.where(outside < last, elapsed[np.minimum(outside + 1, last)], np.inf)
@@ -455,7 +354,7 @@ def statistics_of(sums: Array, elapsed: Array, grid: Array, late: int) -> dict[s
         """Errors, infinite where a run that diverged has none."""
         return np.where(np.isfinite(values), values, np.inf)
 
-    found = {
+    return {
         "outcome": outcome.astype(float),
         "settling_time": np.where(outcome == CONVERGED, settled, np.inf),
         "judged": judged,
@@ -465,7 +364,3 @@ def statistics_of(sums: Array, elapsed: Array, grid: Array, late: int) -> dict[s
         "resets": column["resets"],
         "diverged_at": np.where(diverged > 0, grid[diverged], np.inf),
     }
-    means = sums[:, len(COLUMNS) :]  # sum and number of each
-    with np.errstate(invalid="ignore"):
-        found |= dict(zip(("nees", "nis"), (means[:, 0::2] / means[:, 1::2]).T, strict=False))
-    return found

@@ -73,9 +73,9 @@ class Sensitivity:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(-slope_of_inverse * share * self.sizes / inverse[:, None])
 
-    def ranking(self, share: float = SHARE) -> dict[str, float]:
+    def ranking(self) -> dict[str, float]:
         """Entries with the median size of their `distance_change` over the last half of the run, the largest first."""
-        late = np.abs(self.distance_change(share)[len(self.run.time) // 2 :])
+        late = np.abs(self.distance_change()[len(self.run.time) // 2 :])
         medians = [float(np.median(column[np.isfinite(column)])) for column in late.T]
         order = np.argsort(medians)[::-1]
         return {self.entries[k]: medians[k] for k in order}
@@ -94,10 +94,9 @@ def sensitivity(
     observer: Observer,
     start: Any = None,
     entries: Sequence[str] | None = None,
-    believed: Motion | None = None,
     **settings: Any,
 ) -> Sensitivity:
-    """Return the derivative of an observer's estimate with respect to entries of the believed motion, along a run.
+    """Return the derivative of an observer's estimate with respect to entries of the motion, along a run.
 
     The variational equations are integrated: the observer's flow, measurement update, reset, start and estimate,
     each differentiated.
@@ -109,8 +108,6 @@ def sensitivity(
     start : see `track`
     entries : sequence of str, optional
         Such as "a13", "b3" or "w_c2"; every entry of the motion when left out.
-    believed : Motion, optional
-        The recording's own when left out.
     **settings
         Passed to `track`, such as ``hold``.
 
@@ -139,9 +136,9 @@ def sensitivity(
     >>> found.derivatives.shape
     (501, 3, 2)
     """
-    motion = recording.motion if believed is None else believed
+    motion = recording.motion
     moved = _moved(motion, entries)
-    run = track(recording, observer, start, believed=motion, **settings)
+    run = track(recording, observer, start, **settings)
     form, eq = observer.form, observer.equations
     others = form.parameters[len(motion.parameters) :]
     known = (*motion.parameters, *slopes(moved), *others)

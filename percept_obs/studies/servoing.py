@@ -37,6 +37,9 @@ KNOWN = (*SYSTEM.coordinates, *SYSTEM.motion.parameters)
 GOAL = np.array([[x, y, 1.0] for x in (-0.2, 0.2) for y in (-0.2, 0.2)])
 """Where the four points shall be in the camera's frame, in metres."""
 
+PERIOD = 1 / 30
+"""Seconds from one image to the next."""
+
 FIELD = 1.0
 """Largest image coordinate that the camera sees: 45 degrees."""
 
@@ -158,10 +161,10 @@ def _in_sight(points: Array) -> Flags:
     return (np.abs(points[..., :2]).max(axis=-1) < FIELD * points[..., 2]).all(axis=-1)
 
 
-def _functions(observer: Observer, period: float) -> tuple[Any, Any, Any]:
+def _functions(observer: Observer) -> tuple[Any, Any, Any]:
     """Return functions that start an observer, take it to the next sample, and give its inverse depth, on arrays."""
     form, eq, gains = observer.form, observer.equations, observer.gain_values
-    symbols, parts = (*eq.state, *form.x1, *form.parameters), math.ceil(period / LONGEST_STEP - STEP_ROUNDING)
+    symbols, parts = (*eq.state, *form.x1, *form.parameters), math.ceil(PERIOD / LONGEST_STEP - STEP_ROUNDING)
     begins = vectorised(
         (*form.x1, *hats(form.coordinates), *first_seen(form.x1), *form.parameters), observer.start, gains
     )
@@ -179,7 +182,7 @@ def _functions(observer: Observer, period: float) -> tuple[Any, Any, Any]:
         held, seen = np.moveaxis(before, -1, 0), np.moveaxis(y, -1, 0)
         with np.errstate(all="ignore"):
             for _ in range(parts):
-                state = step(state, np.array(period / parts), lambda _, x: np.stack(flow(*x, *held, *known)))
+                state = step(state, np.array(PERIOD / parts), lambda _, x: np.stack(flow(*x, *held, *known)))
                 if eq.reset:
                     state = np.where(condition(*state, *held, *known)[0], resets(*state, *held, *known), state)
             for update in updates:
@@ -194,14 +197,12 @@ def servo(
     starts: ArrayLike,
     depth: str | Observer,
     ratio: float = 1.0,
-    gain: float = 1.0,
     looking: float = 0.0,
     noise: float = 1e-3,
     duration: float = 10.0,
-    period: float = 1 / 30,
     seed: int = 0,
 ) -> Servoing:
-    """Close the loop (v_c, w_c) = -lambda L(y, 1/Z)^+ (y - y*) from several starts.
+    """Close the loop (v_c, w_c) = -lambda L(y, 1/Z)^+ (y - y*), with lambda = 1/s, from several starts.
 
     Parameters
     ----------
@@ -213,15 +214,13 @@ def servo(
         and knows the commanded velocities.
     ratio : float
         Factor of the depth that is not observed: believed over true, or over that of the goal.
-    gain : float
-        lambda in 1/s.
     looking : float
         Speed in m/s for an image error of 1 that is added where `steering` turns the velocity to see more, summed over
         the points; it vanishes with the error.
     noise : float
         Standard deviation of each image coordinate.
-    duration, period : float
-        Seconds; each command is held for a period.
+    duration : float
+        Seconds; each command is held for the thirtieth part of one.
     seed : int
 
     Returns
@@ -254,20 +253,20 @@ def servo(
     poses = np.asarray(starts, dtype=float)
     if poses.ndim != 2 or poses.shape[1] != 6 or not np.isfinite(poses).all():
         raise ValueError(f"starts have shape {poses.shape}; give finite rows of a translation and a rotation, (S, 6)")
-    positive(ratio=ratio, gain=gain, duration=duration, period=period)
+    positive(ratio=ratio, duration=duration)
     observed = depth if isinstance(depth, Observer) else None
     if observed is None and depth not in ("true", "constant"):
         raise ValueError(f"the depth {depth!r} is none of 'true', 'constant' and an Observer, such as ekf(FORM)")
     if observed and (observed.form.x1, observed.form.parameters) != (FORM.x1, FORM.parameters):
         raise ValueError(f"the {observed.name} observer is of another form; make it of servoing.FORM")
-    generator, surface, steps = np.random.default_rng(seed), SYSTEM.surface, round(duration / period) + 1
+    generator, surface, steps = np.random.default_rng(seed), SYSTEM.surface, round(duration / PERIOD) + 1
     goal = surface.project(GOAL)
     points = _points(poses)
     rows: dict[str, list[Array]] = {name: [] for name in ("coordinates", "samples", "believed", "velocity", "lost")}
     if not _in_sight(points).all():
         raise ValueError(f"start {int(np.argmin(_in_sight(points)))} leaves a point out of sight; take another one")
     u, y, lost, state = np.zeros((len(poses), 6)), goal[:, :2], np.zeros(len(poses), dtype=bool), np.empty(0)
-    begin, advance, estimated = _functions(observed or ekf(FORM), period)
+    begin, advance, estimated = _functions(observed or ekf(FORM))
     for k in bar(range(steps), "servoing"):
         x, before = surface.project(points), y
         y = x[..., :2] + generator.normal(0, noise, x[..., :2].shape)
@@ -280,7 +279,7 @@ def servo(
             believed = (x[..., 2] if depth == "true" else np.broadcast_to(goal[:, 2], y.shape[:2])) / ratio
         seen = np.moveaxis(np.concatenate([y, believed[..., None]], axis=-1), -1, 0)
         L = np.stack(_interaction(*seen), axis=-1).reshape(len(y), -1, 6)
-        u = -gain * (np.linalg.pinv(L) @ e[:, :, None])[..., 0]
+        u = -(np.linalg.pinv(L) @ e[:, :, None])[..., 0]
         if looking:
             turn = np.stack(_turning(*seen, *_parameters(u))).sum(axis=-1).T
             turn /= np.linalg.norm(turn, axis=1, keepdims=True)
@@ -291,12 +290,12 @@ def servo(
         twist = np.zeros((len(u), 4, 4))
         twist[:, :3, :3] = np.cross(u[:, None, 3:], np.eye(3))  # -[w_c]x
         twist[:, :3, 3] = -u[:, :3]
-        moved = expm(period * twist)
+        moved = expm(PERIOD * twist)
         next_points = points @ moved[:, :3, :3].swapaxes(1, 2) + moved[:, None, :3, 3]
         lost = lost | ~_in_sight(next_points)
         points = np.where(lost[:, None, None], points, next_points)
     found: dict[str, Any] = {name: np.stack(values, axis=1) for name, values in rows.items()}
-    return Servoing(np.linspace(0, (steps - 1) * period, steps), goal=goal, noise=noise, **found)
+    return Servoing(np.linspace(0, (steps - 1) * PERIOD, steps), goal=goal, noise=noise, **found)
 
 
 @checked

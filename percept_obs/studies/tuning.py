@@ -14,7 +14,6 @@ from percept_obs.compile import Array
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.studies.comparison import Follow, relative_distance_errors
-from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.following import AnyObserver, StepTooLong
 from percept_obs.validation import bar, checked
 
@@ -139,7 +138,6 @@ def tune_by_likelihood(
     observer: Observer,
     ranges: Mapping[str, Sequence[float]],
     follow: Follow,
-    after: float = 0.0,
 ) -> Tuned:
     """Return a filter with gains of maximum likelihood of its innovations; no truth is needed.
 
@@ -156,14 +154,11 @@ def tune_by_likelihood(
         Positive; powers of ten between them are searched, from the middle and from two other places.
     follow : function of (recording, observer)
         Runs an observer, for instance ``lambda r, o: track(r, o, start)``.
-    after : float
-        Seconds at the beginning of each recording whose innovations do not count.
 
     Raises
     ------
     ValueError
-        If there are no recordings or no gains, `after` lies outside of one, a range is not one of positive values, or
-        every setting diverges.
+        If there are no recordings or no gains, a range is not one of positive values, or every setting diverges.
 
     See Also
     --------
@@ -189,11 +184,6 @@ def tune_by_likelihood(
     for name, ends in ranges.items():
         if len(ends) != 2 or not 0 < ends[0] < ends[1] < math.inf:
             raise ValueError(f"the range of {name} is {tuple(ends)}; give a smallest and a largest positive value")
-    last = min(each.elapsed[-1] for each in recordings)
-    if not 0 <= after <= last:
-        raise ValueError(
-            f"after is {after} s; it must not be negative, nor beyond a recording, which lasts {last:.4g} s"
-        )
     names = tuple(ranges)
     low, high = np.log10(np.array([ranges[name] for name in names], dtype=float)).T
 
@@ -205,7 +195,7 @@ def tune_by_likelihood(
             runs = [follow(recording, filtered) for recording in recordings]
         if any(run.diverged_at is not None for run in runs):
             return math.inf
-        return -float(sum(np.nansum(run.log_likelihood[from_the_start(run.elapsed, after)]) for run in runs))
+        return -float(sum(np.nansum(run.log_likelihood) for run in runs))
 
     def gains_at(place: tuple[float, ...], zero: tuple[str, ...] = ()) -> dict[str, float]:
         return dict(zip(names, (10.0 ** np.array(place)).tolist(), strict=True)) | dict.fromkeys(zero, 0.0)

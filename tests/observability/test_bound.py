@@ -144,7 +144,6 @@ def test_scatter_is_that_of_repeated_sets_of_runs():
     )
     without = [Efficiency(np.zeros(1), np.delete(found[0].errors, k, 0), np.ones(1)).mean() for k in range(40)]
     assert found[0].scatter() == pytest.approx(np.sqrt(39) * np.std(without), rel=1e-12)
-    assert found[0].bias() == pytest.approx(abs(found[0].errors.mean()))
 
 
 test_what_makes_no_sense_is_refused = refuses(
@@ -188,7 +187,7 @@ def test_the_bound_is_drawn_under_the_errors():
 
 
 def ratios(scenario, seeds, seconds, language):
-    """Every observer's errors over the bound in the later half, with the scatter and the largest bias."""
+    """Every observer's errors over the bound in the later half, with the scatter."""
     form, deviation, found = AFFINE.measure("y1", "y2"), 0.1, {}
     recordings = [record(scenario, seconds, CAMERA, seed) for seed in range(seeds)]
     starts = [each.truth[0] + np.random.default_rng(seed).normal(0, 0.1, 3) for seed, each in enumerate(recordings)]
@@ -201,7 +200,7 @@ def ratios(scenario, seeds, seconds, language):
         ]
         errors = efficiency(runs, bound)
         late = seconds / 2
-        found[make.key] = errors.mean(late), errors.scatter(late), errors.bias(late)
+        found[make.key] = errors.mean(late), errors.scatter(late)
     return found
 
 

@@ -25,7 +25,7 @@ from percept_obs import (
     record,
     scenarios,
 )
-from percept_obs.observability import empirical_gramian, error_gramian, lie_ranks
+from percept_obs.observability import empirical_gramian, error_gramian
 from percept_obs.system.forms import partition
 from percept_obs.system.motion import TIME
 
@@ -125,7 +125,6 @@ def test_at_the_focus_of_expansion_one_more_derivative_is_needed():
     assert derivatives.ranks_at(focus | EQ35.values | {AFFINE.coordinates[0]: 0.5}) == (2, 3, 3, 3)
     still = EQ35.values | dict.fromkeys(affine().A, 0.0)
     assert derivatives.ranks_at(focus | still) == (2, 2, 2, 2)
-    np.testing.assert_allclose(np.abs(derivatives.lost_at(focus | still)[:, 0]), [0, 0, 1], atol=1e-12)
 
 
 def drawn(seed):
@@ -193,7 +192,7 @@ def test_a_motion_that_varies_has_derivatives_too():
     turning = affine(np.zeros((3, 3)), [sp.cos(TIME), sp.sin(TIME), 0])
     system = type(AFFINE)(turning, pinhole())
     recording = record(Scenario("turning", turning, (0, 0, 2), 3, pinhole()), camera=CAMERA)
-    assert lie_ranks(recording, system).holds
+    assert how_observable(recording, system).lie.holds
     frozen = lie_derivatives(system.measure("y1", "y2"), 2, varying=True)
     assert [len(each) for each in frozen.derivatives] == [1]
     still = system.rate.diff(TIME)
@@ -206,8 +205,6 @@ def test_perturbed_runs_give_the_gramian_of_the_linearised_system(form):
     linear, runs = error_gramian(recording, form, 2), empirical_gramian(recording, form, 2)
     same = np.searchsorted(linear.time, runs.time - 1e-9)
     np.testing.assert_allclose(linear.matrices[same], runs.matrices, atol=1e-4 * runs.matrices.max())
-    wide = empirical_gramian(recording, form, 2, perturbed=0.3)
-    assert np.abs(wide.matrices - runs.matrices).max() > 1e-2
 
 
 @pytest.mark.slow
@@ -247,7 +244,6 @@ def test_windows_that_do_not_fit_are_refused(measure, window):
 
 test_other_requests_that_make_no_sense_are_refused = refuses(
     lambda call: call(),
-    (lambda: empirical_gramian(crossing(), BOTH, 1, 0.0), "between 0 and 1"),
     (lambda: lie_derivatives(BOTH, -1), "order 0"),
     (lambda: lie_derivatives(BOTH, 10**12), "fewer orders"),
     (lambda: lie_derivatives(BOTH).ranks_at({}), "no values for"),

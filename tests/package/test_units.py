@@ -121,8 +121,8 @@ def many(form, unit):
     camera, found = Camera(0.05, NOISE), {}
     for name, observer in (("gain", ibo(form)), ("filter", ekf(form))):
         some = {key: values for key, values in over.items() if key != "gain" or name == key}
-        data = ensemble(scene(unit), observer, some, 2, 3, camera, prior={}, after=1)
-        found |= {name + key: value for key, value in numbers(data, unit, ("final", "rms", "worst", "bound")).items()}
+        data = ensemble(scene(unit), observer, some, 2, 3, camera, after=1)
+        found |= {name + key: value for key, value in numbers(data, unit, ("final", "rms", "worst")).items()}
     return found
 
 

@@ -80,10 +80,11 @@ def test_every_observer_runs_on_the_form_as_it_is(make):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("angular_velocity", [STILL, W], ids=["w = 0", "w"])
-@pytest.mark.parametrize("normal", [(0, 0, 1), (0.3, -0.2, 1)], ids=["facing", "tilted"])
-def test_the_homography_gives_the_scaled_inverse_depth(angular_velocity, normal):
+@pytest.mark.parametrize("tilt", [(0, 0), (0.3, -0.2)], ids=["facing", "tilted"])
+def test_the_homography_gives_the_scaled_inverse_depth(angular_velocity, tilt):
     setup = chwa2019_simulation("V.A", angular_velocity)
-    recording = record(setup, 2, ScaledDepthCamera(depth=PatchDepth(grid_patch(0.4, 3, normal))))
+    patch = grid_patch(0.4) + np.outer(grid_patch(0.4)[:, :2] @ tilt, [0, 0, 1])
+    recording = record(setup, 2, ScaledDepthCamera(depth=PatchDepth(patch)))
     np.testing.assert_allclose(recording.outputs, recording.truth[:, :3], rtol=1e-9)
 
 
@@ -215,7 +216,6 @@ test_scenarios_that_make_no_sense_are_refused = refuses(
     (lambda: grid_patch(0.0), "positive side"),
     (lambda: grid_patch(0.1, 4), "odd count"),
     (lambda: grid_patch(0.1, 1), "odd count"),
-    (lambda: grid_patch(0.1, 3, (0, 0, 0)), "not all zero"),
 )
 
 
@@ -226,10 +226,10 @@ def test_a_point_that_comes_behind_the_camera_is_refused():
 
 
 def test_a_patch_begins_at_the_tracked_point_and_is_flat():
-    patch = grid_patch(0.4, 5, (0.1, 0.2, 1.0))
+    patch = grid_patch(0.4, 5)
     assert patch.shape == (25, 3)
     np.testing.assert_array_equal(patch[0], 0)
-    np.testing.assert_allclose(patch @ [0.1, 0.2, 1.0], 0, atol=1e-15)
+    np.testing.assert_array_equal(patch[:, 2], 0)
     np.testing.assert_allclose(patch.mean(axis=0), 0, atol=1e-15)
 
 

@@ -105,7 +105,7 @@ def test_what_makes_no_sense_is_refused():
     for ask, message in (
         (lambda: sensitivity(RECORDING, observer, entries=("b4",)), "no entry b4; it has a11"),
         (lambda: sensitivity(RECORDING, observer, entries=()), "has no entry"),
-        (lambda: sensitivity(RECORDING, observer, believed=affine()), "no entries with numbers"),
+        (lambda: misbelieved(affine(), b3=1.0), "no entries with numbers"),
         (lambda: misbelieved(RECORDING.motion, w_c1=1.0), "no entry w_c1"),
         (lambda: sensitivity(RECORDING, observer, ZERO, ("b3",)).change(b1=1.0), "no entry b1; it has b3"),
         (lambda: variation(observer.equations, observer.equations.state[:1]), "no parameter"),

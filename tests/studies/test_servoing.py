@@ -76,7 +76,7 @@ def test_steering_that_vanishes_with_the_error_looks_better_on_the_way():
 
 
 def test_a_point_that_leaves_the_image_is_lost():
-    found = servo(FAR, "constant", ratio=8.0, gain=20.0, duration=4.0)
+    found = servo(FAR, "constant", ratio=160.0, duration=4.0)
     assert found.lost[0, -1]
     assert found.arrived_at()[0] == np.inf
     assert not found.velocity[0, -1].any()
@@ -99,6 +99,6 @@ test_what_makes_no_sense_is_refused = refuses(
     (FAR[0], "true", {}, r"starts have shape \(6,\); give finite rows"),
     (FAR, "guessed", {}, "the depth 'guessed' is none of 'true', 'constant' and an Observer"),
     (FAR, ekf(servoing.SYSTEM.measure("y1")), {}, "is of another form; make it of servoing.FORM"),
-    (FAR, "true", {"gain": -1.0}, "gain is -1.0; it must be positive"),
+    (FAR, "true", {"ratio": -1.0}, "ratio is -1.0; it must be positive"),
     ([[3, 0, 0, 0, 0, 0]], "true", {}, "start 0 leaves a point out of sight"),
 )

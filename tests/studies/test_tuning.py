@@ -146,14 +146,12 @@ def test_noise_of_the_velocities_explains_innovations_and_errors_on_real_tracks(
 NOISE = {"noise_variance": (1e-3, 1)}
 
 test_what_makes_no_sense_is_refused = refuses(
-    lambda recordings, observer, ranges, after: tune_by_likelihood(
-        recordings, observer, ranges, lambda r, o: track(r, o, {"y3": 0.3}, language="python"), after
+    lambda recordings, observer, ranges: tune_by_likelihood(
+        recordings, observer, ranges, lambda r, o: track(r, o, {"y3": 0.3}, language="python")
     ),
-    ([], ekf(BOTH), NOISE, 0.0, "0 recordings"),
-    (RECORDINGS, ekf(BOTH), {}, 0.0, "0 gains"),
-    (RECORDINGS, ekf(BOTH), {"noise_variance": (0, 1)}, 0.0, "smallest and a larg"),
-    (RECORDINGS, ekf(BOTH), {"noise": (1e-3, 1)}, 0.0, "has no gain noise"),
-    (RECORDINGS, ekf(BOTH), NOISE, -1.0, "must not be negative"),
-    (RECORDINGS, ekf(BOTH), NOISE, 1e9, "nor beyond a recording, which lasts"),
-    (RECORDINGS, ibo(BOTH), {"gain": (1, 20)}, 0.0, "claims no covariance"),
+    ([], ekf(BOTH), NOISE, "0 recordings"),
+    (RECORDINGS, ekf(BOTH), {}, "0 gains"),
+    (RECORDINGS, ekf(BOTH), {"noise_variance": (0, 1)}, "smallest and a larg"),
+    (RECORDINGS, ekf(BOTH), {"noise": (1e-3, 1)}, "has no gain noise"),
+    (RECORDINGS, ibo(BOTH), {"gain": (1, 20)}, "claims no covariance"),
 )

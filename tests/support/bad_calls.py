@@ -23,7 +23,7 @@ from camera_paths import write_stereo_mat
 import percept_obs as po
 from percept_obs import observers, points, structure
 from percept_obs.compile.equations import Equations
-from percept_obs.observability import empirical_gramian, error_gramian, instantaneous, lie_ranks
+from percept_obs.observability import empirical_gramian, error_gramian, instantaneous
 from percept_obs.observers import gains
 from percept_obs.observers.integral_sliding_mode import tolerable_amplification, ultimate_bound
 from percept_obs.points import gramian
@@ -36,7 +36,7 @@ from percept_obs.recording.pose_files import write_tum
 from percept_obs.recording.stereo_mat import read_stereo_mat
 from percept_obs.structure import pixels
 from percept_obs.structure import scenarios as structure_scenarios
-from percept_obs.studies import chatter, comparison, consistency, least_squares, tuning
+from percept_obs.studies import chatter, comparison, least_squares, tuning
 from percept_obs.system.signal import Signal
 
 PACKAGE = str(Path(po.__file__).parent)
@@ -160,7 +160,7 @@ def calls():
         (choice.theta_values, {"scale": 1.0, "motion": turning, "times": [0.0, 1.0]}),
         (structure.GivenDepth, {"noise": po.Uniform(0.1), "bias": 0.1, "drift": 0.1}),
         (structure.PatchDepth, {"offsets": structure.grid_patch(1.0)}),
-        (structure.grid_patch, {"side": 1.0, "count": 3, "normal": (0.0, 0.0, 1.0)}),
+        (structure.grid_patch, {"side": 1.0, "count": 3}),
         (structure.ScaledDepthCamera, {"period": 0.01, "pixels": camera, "ratio": pixels.SignalToNoise(60.0)}),
         (structure_scenarios.chwa2019_simulation, {"section": "IV.A", "chwa_rotation": (0.0, 0.0, 0.1)}),
         (structure_scenarios.chwa2019_semigeneral, {"set_up": "simulation"}),
@@ -196,18 +196,17 @@ def calls():
         (instantaneous(form).circle, {"threshold": 0.1}),
         (po.windowed, {"form": form, "recording": recording, "window": 1.0}),
         (po.how_observable, {"recording": recording, "system": form, "window": 1.0}),
-        (po.cramer_rao, {"recording": recording, "system": form, "prior": np.eye(3), "doubt": 0.1, "step": 0.01}),
+        (po.cramer_rao, {"recording": recording, "system": form, "prior": np.eye(3), "doubt": 0.1}),
         (po.efficiency, {"runs": [run, run], "bound": bound}),
         (po.lie_derivatives, {"system": form, "orders": 1, "varying": False}),
-        (lie_ranks, {"recording": recording, "system": form, "orders": 1}),
         (error_gramian, {"recording": recording, "system": form, "window": 1.0}),
-        (empirical_gramian, {"recording": recording, "system": form, "window": 1.0, "perturbed": 1e-3}),
+        (empirical_gramian, {"recording": recording, "system": form, "window": 1.0}),
         (
             po.bound_map,
             {"system": moving, "seconds": 1.0, "distance": 4.0, "measured": ("y1",), "y1": (-1, 1), "resolution": 4},
         ),
         (po.steering, {"system": system}),
-        (po.steered, {"scenario": scenario, "gain": 5.0}),
+        (po.steered, {"scenario": scenario}),
         (gramian.gramian, {"recording": seen, "window": 1.0}),
         (gramian.linear_gramian, {"recording": seen, "window": 1.0}),
         (gramian.decay_bound, {"recording": seen, "observer": luenberger, "window": 1.0}),
@@ -215,8 +214,6 @@ def calls():
         (comparison.relative_distance_errors, {"runs": [run], "after": 1.0, "reference": "truth", "absence": 1.0}),
         (tuning.best_setting, {"recordings": [recording], "observers": [observer], "follow": po.track}),
         (po.check_consistency, {"run": filtered, "samples": 5, "after": 0.1, "confidence": 0.9}),
-        (consistency.claimed_interval, {"run": filtered}),
-        (consistency.claimed_distance, {"run": filtered}),
         (chatter.chatter, {"recording": recording, "observer": observer, "steps": [0.01], "after": 0.1}),
         (chatter.effort, {"scenario": scenario, "observer": observer, "duration": 0.5, "tolerance": 1e-3, "most": 300}),
         (least_squares.moving_window_least_squares, {"recording": recording, "window": 1.0}),

@@ -28,7 +28,6 @@ from percept_obs.labs.observer.tracks import (
 )
 from percept_obs.labs.shared.common_settings import window_in
 from percept_obs.labs.shared.lab import NOISES, OF_ONE_POINT, Lab, record_while_seen, refuse_observers
-from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.samples import table_for_the_page
 from percept_obs.labs.shared.schema import Choice, Settings
 from percept_obs.labs.shared.surfaces import SHAPES, numbers_of, shaped_surface
@@ -237,14 +236,17 @@ class ObserverLab(Lab):
         sentences = excitation_in_words(self._registry.form(*seen), recording, window)
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", StepTooLong)
-            found = self.runs({**settings, "observers": followed})
+            found = self._followed(recording, {**settings, "observers": followed})
         for name, run in found.items():
             sentences += run_in_words(observers[name], run, window)
         return {"sentences": [*sentences, *(str(warning.message) for warning in caught), *beyond]}
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
-        recording, chosen, other = self.recorded(settings), settings["start"], settings["believed"]
+        return self._followed(self.recorded(settings), settings)
+
+    def _followed(self, recording: Recording, settings: Settings) -> dict[str, Run]:
+        chosen, other = settings["start"], settings["believed"]
         size = recording.outputs[0, 2:].tolist()  # if it is seen, its estimate starts there
         values = [*chosen["values"][:2], *size, chosen["values"][2]]
         start = {"own": None, "zero": [0.0] * len(values), "chosen": values}[chosen["mode"]]
@@ -301,7 +303,6 @@ def _numbers(settings: Settings) -> np.ndarray:
     return np.array([*np.ravel(settings["A"]), *settings["b"]], dtype=float)
 
 
-@kept_by_reads
 def _motion(settings: Settings) -> Motion:
     """The motion of settings: constant, or as its expressions of time say."""
     if settings["motion"].strip():
@@ -312,7 +313,6 @@ def _motion(settings: Settings) -> Motion:
         return affine(settings["A"], settings["b"])
 
 
-@kept_by_reads
 def _simulated(settings: Settings, motion: Motion, seen_on: ImagingSurface) -> Recording:
     """Recording of a simulated point, as far as it stays in front of the camera."""
     surface = shaped_surface(settings) if settings["surface"] in SHAPES else seen_on

@@ -14,7 +14,6 @@ from percept_obs.compile import Array
 from percept_obs.compile.integrator import LARGEST_STEP_RATE
 from percept_obs.labs.shared.common_settings import gains, offering, own_gains
 from percept_obs.labs.shared.lab import NOISES, OF_ONE_POINT, Lab, record_while_seen, refuse_observers
-from percept_obs.labs.shared.memory import kept_by_reads
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import samples_for_the_page
 from percept_obs.labs.shared.schema import Schema, Settings
@@ -295,7 +294,6 @@ def _velocities(settings: Settings, times: Array) -> Array:
 _phases = np.array([*PHASES.values()], dtype=float).ravel()
 
 
-@kept_by_reads
 def _recorded(settings: Settings, unknowns: StructureAndMotion, samples: Motion | None) -> Recording:
     """Recording of the camera, as far as the point stays in front of it."""
     (y1, y2, ybar3), scale = settings["ybar"], settings["scale"]
