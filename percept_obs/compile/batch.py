@@ -30,7 +30,7 @@ BATCH = 16
 """Runs that numba's loop takes together: two or four of a processor's vectors, whose latencies then overlap."""
 
 COLUMNS = ("outside", "judged", "final", "squares", "worst", "resets", "diverged", "nearest", "drop")
-"""Columns of the result, before two, sum and number, for each of the means of `Statistics`."""
+"""Columns of the result."""
 
 _COMPILING = Lock()
 """Held while a loop is compiled, so that threads that ask for the same one do not compile it twice."""
@@ -49,8 +49,6 @@ class Statistics:
     judged: Expressions  # the largest of which is to stay within the tolerance
     behind: Boolean  # where that is infinite
     error: sp.Expr  # whose last and largest value and mean square are asked for
-    means: Expressions = ()  # whose means are asked for; values that are not finite do not count
-    samples: Symbols = ()  # those that arrive, NaN where there is none, if the means use them
     measured: tuple[int, ...] = ()  # index of each measured output among the true coordinates
 
 
@@ -70,7 +68,6 @@ class BatchLoop(NamedTuple):
     equations: Equations
     statistics: Statistics
     moving: MovingPoint | None  # source of the truth, unless it comes from an array
-    held: bool  # whether outputs between samples come from an array; if not, the last is held
     varying: bool  # whether the parameters vary over time
     noises_alike: bool  # in all runs
     truths_alike: bool  # in all runs
@@ -85,8 +82,8 @@ class _ManyRuns(Loop):
 
     text: ManyRuns
     arguments = (
-        "start, first, gains, moves, noise, truth, known, which, lengths, arriving, held, elapsed, reach, "
-        "tolerance, late, result"
+        "start, first, gains, moves, noise, truth, known, which, lengths, arriving, elapsed, reach, tolerance, "
+        "late, result"
     )
     lengths = "lengths"
 
@@ -97,11 +94,11 @@ class _ManyRuns(Loop):
         size = len(loop.moving.point) if loop.moving else 0
         self.count |= {"t": len(statistics.truth), "u": self.count["y"], "m": size}
         names = self.names | {statistics.elapsed: sp.Symbol("now", real=True)} | numbered("t", statistics.truth)
-        names |= numbered("b", statistics.begun) | numbered("v", statistics.samples)
+        names |= numbered("b", statistics.begun)
         lasting = {names[symbol] for symbol in (*statistics.begun, *self.equations.gains)}
         self.lasting: dict[sp.Expr, sp.Symbol] = {}
         self.first = renamed(statistics.first, names)
-        every = (statistics.error, *statistics.means, *statistics.judged, statistics.hidden, statistics.behind)
+        every = (statistics.error, *statistics.judged, statistics.hidden, statistics.behind)
         self.values = [take_out(each, lasting, self.lasting, "r") for each in renamed(every, names)]
 
     def begin(self) -> None:
@@ -111,36 +108,26 @@ class _ManyRuns(Loop):
             self.load("g", "gains[i, {}]")
             self.fix(self.fixed)
             self.load("y", "0.0", to="z")
-            if self.loop.held:  # named here, for by the order of its rows numba rounds
-                self.load("y", "0.0", to="y_0_")
             self.load("p", "known[which[i, 2], 0, {}]")
             size = self.count["m"]
             for k in range(size * (size + 2) + len(self.moving.shape) if self.moving else 0):
                 text.assign(f"m{k}", f"moves[i, {k}]")
-            zero = dict.fromkeys((*COLUMNS, *self.means), "0.0")
+            zero = dict.fromkeys(COLUMNS, "0.0")
             for name, value in (zero | {"outside": "-1.0", "nearest": "math.inf", "alive": "1.0"}).items():
                 text.assign(name, value)
 
-    @property
-    def means(self) -> list[str]:
-        """Sums and numbers of the means."""
-        return [f"mean{k}" for k in range(2 * len(self.statistics.means))]
-
     def look(self, instant: int) -> None:
-        self.load("y", f"y_{instant}_{{}}" if self.loop.held else "z{}")
+        self.load("y", "z{}")
         if self.loop.varying:
             self.load("p", f"p_{instant}_{{}}")
 
     def step(self) -> None:
         text, loop = self.text, self.loop
         text.assign("c", "arriving[k + 1]")
-        if loop.held or loop.varying:
+        if loop.varying:
             with text.runs():
                 for instant in sorted({*PLACES, EACH}):
-                    if loop.held:
-                        self.load("y", f"held[i, k, {instant}, {{}}]", to=f"y_{instant}_")
-                    if loop.varying:
-                        self.load("p", f"known[which[i, 2], {EACH}*k + {instant}, {{}}]", to=f"p_{instant}_")
+                    self.load("p", f"known[which[i, 2], {EACH}*k + {instant}, {{}}]", to=f"p_{instant}_")
         text.assign("off", "False")
         with text.runs():
             super().step()
@@ -196,7 +183,7 @@ class _ManyRuns(Loop):
 
     def end(self) -> None:
         with self.text.runs():
-            for k, name in enumerate((*COLUMNS, *self.means)):
+            for k, name in enumerate(COLUMNS):
                 self.text.store(f"result[i, {k}]", name)
 
     def arrive(self, sample: str) -> None:
@@ -236,7 +223,7 @@ class _ManyRuns(Loop):
 
     def accumulate(self, sample: str) -> None:
         """Accumulate the statistics at a sample; errors count from the sample `late` on."""
-        text, statistics = self.text, self.statistics
+        text = self.text
         with text.runs():
             self.load("y", "z{}")
             text.assign("now", f"elapsed[{sample}]")
@@ -252,21 +239,16 @@ class _ManyRuns(Loop):
             text.assign("counts", f"{sample} >= late")
             text.assign("squares", "squares + where(counts, error*error, 0.0)")
             text.assign("worst", "where(counts & (error > worst), error, worst)")
-            for k in range(len(statistics.means)):
-                text.assign("there", f"counts & (abs(e{1 + k}) < math.inf)")
-                text.assign(f"mean{2 * k}", f"mean{2 * k} + where(there, e{1 + k}, 0.0)")
-                text.assign(f"mean{2 * k + 1}", f"mean{2 * k + 1} + where(there, 1.0, 0.0)")
 
     def judge(self) -> None:
         """Find the error, and the largest of the values that are judged; both are NaN without an estimate."""
         text, statistics = self.text, self.loop.statistics
-        first = 1 + len(statistics.means)
-        hidden = first + len(statistics.judged)
+        hidden = 1 + len(statistics.judged)
         text.assign("seen", "alive > 0.0")
         if statistics.hidden != sp.false:
             text.assign("seen", f"where(e{hidden}, False, seen)")
-        text.assign("largest", f"e{first}")
-        for k in range(first + 1, hidden):
+        text.assign("largest", "e1")
+        for k in range(2, hidden):
             text.assign("largest", f"where(e{k} > largest, e{k}, largest)")
         if statistics.behind != sp.false:
             text.assign("largest", f"where(e{hidden + 1}, math.inf, largest)")
@@ -290,34 +272,31 @@ class Batch:
     arriving: Indices  # (N + 1,), index of the sample at each step's end, -1 if there is none; 0 first
     elapsed: Array  # (K,), seconds from the first sample to each
     reach: float = np.inf  # largest absolute image coordinate that is seen
-    held: Array | None = None  # (L, N, EACH + 1, m), outputs at the instants; the last sample is held without it
 
 
 def run_batch(loop: BatchLoop, batch: Batch, tolerance: float, late: int, language: Language) -> Array:
-    """Run a batch; return a row of statistics for each of its L runs: a column for each of `COLUMNS`, two a mean.
+    """Run a batch; return a row of statistics for each of its L runs: a column for each of `COLUMNS`.
 
     Errors count from the sample `late` on.  The columns are: the last sample outside of the tolerance, -1 if there is
     none; what is judged and the error at the last sample; sum of squares and largest value of the error; resets; the
     step, from 1 on, at whose end the state was no longer finite, or 0; how near a point came that moves on its own, and
-    the largest change of its distance between samples; and of each mean the sum and the number of values.
+    the largest change of its distance between samples.
     """
-    runs, columns = len(batch.start), len(COLUMNS) + 2 * len(loop.statistics.means)
+    runs = len(batch.start)
     # compiled code has a fixed width; numpy takes all runs at once
     width = BATCH if language == "numba" else max(runs, 1)
     filled = -(-runs // width) * width
     rows = np.minimum(np.arange(filled), runs - 1)  # the last run stands in for those that fill up the last batch
-    held = np.zeros((1, 1, 1, 1)) if batch.held is None else _contiguous(batch.held)
     own = [_contiguous(each[rows]) for each in (batch.start, batch.first, batch.gains, batch.moves)]
     shared = [_contiguous(each) for each in (batch.noise, batch.truth, batch.known)]
     lengths, elapsed = _contiguous(batch.lengths), _contiguous(batch.elapsed)
     which, arriving = (np.ascontiguousarray(each, dtype=np.intp) for each in (batch.which[rows], batch.arriving))
-    result, kernel = np.empty((filled, columns)), compiled(loop, language)
+    result, kernel = np.empty((filled, len(COLUMNS))), compiled(loop, language)
     with np.errstate(all="ignore"):
         for begin in range(0, filled, width):
             of = slice(begin, begin + width)
-            outputs = held if not loop.held else held[of] if begin + width <= runs else held[rows[of]]
             kernel(
-                *(*(each[of] for each in own), *shared, which[of], lengths, arriving, outputs, elapsed),
+                *(*(each[of] for each in own), *shared, which[of], lengths, arriving, elapsed),
                 *(batch.reach, float(tolerance), late, result[of]),
             )
     return result[:runs]
@@ -334,8 +313,8 @@ def _compiled(loop: BatchLoop, language: Language) -> Callable[..., None]:
     text = _ManyRuns(ManyRuns(language, str(BATCH)), loop).written()
     if language == "python":
         return executed(text)
-    one, two, three, four = (f"float64[{':, ' * further}::1]" for further in range(4))
+    one, two, three = (f"float64[{':, ' * further}::1]" for further in range(3))
     index, indices = "intp[::1]", "intp[:, ::1]"
     own, shared = ", ".join([two] * 4), ", ".join([three] * 3)
-    signature = f"({own}, {shared}, {indices}, {one}, {index}, {four}, {one}, float64, float64, intp, {two})"
+    signature = f"({own}, {shared}, {indices}, {one}, {index}, {one}, float64, float64, intp, {two})"
     return machine_code(text, signature, "batch")

@@ -136,7 +136,6 @@ class Plan:
             self.observer.equations,
             accumulated(self.observer, self.scale.tolist()),
             moving if self.scenes and self.scenario.motion.values else None,
-            held=False,
             varying=not self.believed.values,
             noises_alike=self.grid.sizes["seed"] == 1 and not {"noise", "dropout"} & varied,
             truths_alike=not self.scenes,
