@@ -10,7 +10,7 @@ from sample_sizes import sampled
 from percept_obs import Camera, Gaussian, Scenario, diagnose, pinhole, record, rigid, scenarios
 from percept_obs.figures import causes
 from percept_obs.recording import Unlikely
-from percept_obs.studies.diagnosis.causes import CAUSES
+from percept_obs.studies.diagnosis.causes import NUMBERS
 from percept_obs.studies.diagnosis.fitting import fit
 from percept_obs.studies.diagnosis.search import LIMITS, _fewest
 from percept_obs.studies.diagnosis.tracks import guess, seen, spikes, track_of
@@ -62,12 +62,12 @@ def test_lost_samples_and_one_output_are_explained_as_well():
     assert fit([track_of(single)], "nothing", ()).rms < 1e-6
 
 
-@pytest.mark.parametrize("mix_up", ["nothing", "w", "vehicle"])
+@pytest.mark.parametrize("mix_up", ["nothing", "w", "vehicle", "uv", "fisheye", "mount 5"])
 def test_derivatives_by_the_point_and_by_every_cause_are_those_of_differences(mix_up):
     track = track_of(SESSION[0])
-    point, wrong = guess(track, mix_up, {})[0], {key: np.full(cause.size, 0.01) for key, cause in CAUSES.items()}
+    point, wrong = guess(track, mix_up, {})[0], {key: np.full(cause.size, 0.01) for key, cause in NUMBERS.items()}
     point = point / np.linalg.norm(point)
-    found = seen(track, point, mix_up, wrong, [*CAUSES])
+    found = seen(track, point, mix_up, wrong, [*NUMBERS])
 
     def difference(change):
         return (change(1e-6) - change(-1e-6)) / 2e-6
@@ -75,7 +75,7 @@ def test_derivatives_by_the_point_and_by_every_cause_are_those_of_differences(mi
     for k in range(4):
         by = difference(lambda h, k=k: seen(track, point + h * np.eye(4)[k], mix_up, wrong).outputs)
         np.testing.assert_allclose(found.by_point[:, :, k], by, atol=1e-5 * np.abs(by).max())
-    steps = [(key, step) for key, cause in CAUSES.items() for step in np.eye(cause.size)]
+    steps = [(key, step) for key, cause in NUMBERS.items() for step in np.eye(cause.size)]
     for k, (key, step) in enumerate(steps):
         by = difference(
             lambda h, key=key, step=step: seen(track, point, mix_up, {**wrong, key: wrong[key] + h * step}).outputs

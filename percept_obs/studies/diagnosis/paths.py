@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from percept_obs.compile import Array
+from percept_obs.recording.pose_errors import PoseErrors
 from percept_obs.recording.reckoning import transitions
-from percept_obs.studies.diagnosis.causes import MIX_UPS
+from percept_obs.studies.diagnosis.causes import MIX_UPS, Placed
 from percept_obs.system.motion import Motion, coefficients
 
 if TYPE_CHECKING:
@@ -60,15 +61,30 @@ class Path:
 
 
 @lru_cache(maxsize=256)
-def _known(motion: Motion, begin: float, end: float, unit: float) -> tuple[Array, Array, Array, Array, Array]:
-    """Times from begin to end, A and b (by the unit of length) then, and at the two Gauss points of each step."""
+def _known(
+    motion: Motion, begin: float, end: float, unit: float
+) -> tuple[Array, Array, Array, Array, Array, tuple[Placed, Placed] | None]:
+    """Times from begin to end, A and b (by the unit of length) then and at the two Gauss points of each step, poses."""
     count = min(max(8, math.ceil((end - begin) / LONGEST)), MOST_STEPS)
     times = np.linspace(begin, end, count + 1)
     gauss = (times[:-1, None] + (end - begin) / count * (0.5 + np.array([-1, 1]) / math.sqrt(12))).ravel()
     rows = motion.known(np.concatenate([times, gauss]))
     A, b = coefficients(motion, np.broadcast_to(rows, (len(times) + len(gauss), rows.shape[1])))
     b = b / unit
-    return times, A[: count + 1], b[: count + 1], A[count + 1 :], b[count + 1 :]
+    placed = (
+        None if motion.errors is None else (_placed(motion.errors, times, unit), _placed(motion.errors, gauss, unit))
+    )
+    return times, A[: count + 1], b[: count + 1], A[count + 1 :], b[count + 1 :], placed
+
+
+def _placed(errors: PoseErrors, times: Array, unit: float) -> Placed:
+    """Poses at some times, as they were given, and straight between these."""
+    from scipy.spatial.transform import Rotation, Slerp
+
+    times = np.clip(times, errors.time[0], errors.time[-1])
+    position = np.stack([np.interp(times, errors.time, column) for column in errors.position.T], axis=-1) / unit
+    mount = None if errors.mount is None else (errors.mount[0] / unit, errors.mount[1])
+    return Placed(Slerp(errors.time, Rotation.from_matrix(errors.turns))(times), position, mount)
 
 
 @lru_cache(maxsize=256)
@@ -76,11 +92,12 @@ def path(
     motion: Motion, begin: float, end: float, unit: float, mix_up: str, bias: tuple[float, ...], drift: float
 ) -> Path:
     """Path under a motion without a mix-up, a bias and a drift, of fourth order in the step (Magnus)."""
-    times, A, b, A_gauss, b_gauss = _known(motion, begin, end, unit)
+    times, A, b, A_gauss, b_gauss, placed = _known(motion, begin, end, unit)
+    there, between = placed or (None, None)
     change, step = MIX_UPS[mix_up].undone, times[1] - times[0]
     gauss = (times[:-1, None] + step * (0.5 + np.array([-1, 1]) / math.sqrt(12))).ravel()
     turning = np.tensordot(bias, SPINS, axes=1)
-    (A, b), (A_gauss, b_gauss) = change(A + turning, b), change(A_gauss + turning, b_gauss)
+    (A, b), (A_gauss, b_gauss) = change(A + turning, b, there), change(A_gauss + turning, b_gauss, between)
     b, b_gauss = (rows * np.exp(-drift * (at - begin))[:, None] for rows, at in ((b, times), (b_gauss, gauss)))
     A1, A2, b1, b2 = A_gauss[::2], A_gauss[1::2], b_gauss[::2], b_gauss[1::2]
     twist = math.sqrt(3) / 12 * step**2

@@ -1,0 +1,166 @@
+"""Print which mistakes of files and calibration `diagnose` names on paths of real poses, and what is trusted then.
+
+python tests/studies/strangers_study.py FILE... [--paths 20] [--faults "poses inverted" ...] [--length 8] [--seed 0]
+
+The files are poses in the TUM or EuRoC format, or dataset3.mat of UTIAS; the paths are those of paths_study.py.  The
+camera sits on a body with a mount such as EuRoC's; its poses have a millimetre and 0.05 degrees of noise, at 30 a
+second, and the images of points at rest half a pixel.  Then somebody makes one mistake with them.
+"""
+
+import argparse
+import warnings
+import zlib
+from dataclasses import replace
+from pathlib import Path
+from time import process_time
+
+import numpy as np
+from paths_study import CAMERA, PIXEL, disturbed, followed, knots, recordings, window
+from scipy.spatial.transform import Rotation
+
+from percept_obs import PixelCamera, diagnose, read_euroc, read_tum
+from percept_obs.recording.poses import Poses
+from percept_obs.recording.utias import utias_tracks
+
+RATE, METRES, RADIANS = 30, 1e-3, np.radians(0.05)
+LENS = (-0.28, 0.07, 0.0, 0.0)
+FAULTS = (
+    *("poses inverted", "quaternion order", "u and v exchanged", "focal length twice", "focal length half"),
+    *("image size", "mount inverted", "mount left out", "time offset", "flipped axis", "frames swapped"),
+    "distortion ignored",
+)
+MORE = ("rotations inverted", "quaternion order, read as EuRoC", "fisheye ignored", "nothing")
+WRONG = 0.2
+
+
+def poses_of(file):
+    """Poses in a file."""
+    if file.endswith(".mat"):
+        path = utias_tracks(file).path
+        return Poses(path.time, path.position, path.orientation)
+    if file.endswith(".csv"):
+        return read_euroc(file, repeated="drop")
+    return read_tum(file, repeated="drop")
+
+
+def paths(files, count, length, seed):
+    """So many windows of the files, evenly spread: the camera's exact poses, and places that it sees."""
+    found = []
+    for file in files:
+        poses, key = poses_of(file), zlib.crc32(Path(file).stem.encode())
+        knot = knots(poses)
+        for begin in np.arange(poses.time[0] + 1, poses.time[-1] - length - 1, length):
+            one = window(knot, begin, length, np.random.default_rng([seed, key, int(begin)]))
+            if one is not None:
+                _, places, turning, points = one
+                time = begin + np.arange(int(length * RATE) + 1) / RATE
+                exact = Poses(time - begin, places(time), turning(time).as_quat())
+                found.append((f"{Path(file).stem} {begin:.0f} s", exact, points, [seed, key, int(begin)]))
+    for k in np.unique(np.linspace(0, len(found) - 1, min(count, len(found))).round().astype(int)):
+        yield found[k]
+
+
+def spoiled(poses, pixels, fault, draw):
+    """Poses and images as somebody brings them who made a mistake."""
+    mount = (
+        draw.normal(0, 0.06, 3),
+        Rotation.from_euler("z", 90, degrees=True) * Rotation.from_rotvec(draw.normal(0, 0.03, 3)),
+    )
+    place, turn = mount[0], mount[1].as_matrix()
+    body = replace(poses.mounted(-turn.T @ place, turn.T), mount=None)
+    back, quaternions, camera = poses.rotation.inv(), poses.orientation, CAMERA
+    image = CAMERA.image(pixels)
+    if fault == "poses inverted":
+        poses = Poses(poses.time, -back.apply(poses.position.copy()), back.as_quat())
+    elif fault == "rotations inverted":
+        poses = Poses(poses.time, poses.position, back.as_quat())
+    elif fault.startswith("quaternion order"):
+        step = -1 if "EuRoC" in fault else 1
+        poses = Poses(poses.time, poses.position, np.roll(quaternions, step, axis=1))
+    elif fault == "u and v exchanged":
+        pixels = pixels[..., ::-1]
+    elif fault.startswith("focal length"):
+        camera = PixelCamera(np.array(CAMERA.focal) * (2 if "twice" in fault else 0.5), CAMERA.centre)
+    elif fault == "image size":
+        pixels = (pixels + 0.5) / 2 - 0.5
+    elif fault == "mount inverted":
+        poses = body.mounted(-turn.T @ place, turn.T)
+    elif fault == "mount left out":
+        poses = body
+    elif fault == "time offset":
+        poses = Poses(poses.time + draw.choice([-0.1, 0.1]), poses.position, quaternions)
+    elif fault == "flipped axis":
+        pixels = [0, 480] + pixels * [1, -1]
+    elif fault == "frames swapped":
+        poses = Poses(poses.time, poses.position, (poses.rotation * Rotation.from_rotvec([np.pi, 0, 0])).as_quat())
+    elif fault == "distortion ignored":
+        pixels = PixelCamera(CAMERA.focal, CAMERA.centre, distortion=LENS).pixels(image)
+    elif fault == "fisheye ignored":
+        radius = np.linalg.norm(image, axis=-1, keepdims=True)
+        pixels = CAMERA.pixels(image / radius * np.arctan(radius))
+    return poses, pixels, camera
+
+
+def judged(exact, places, fault, draw):
+    """The diagnosis, and for each track its error and whether it is trusted, under a mistake."""
+    seen = np.stack([exact.rotation.inv().apply(place - exact.position) for place in places], axis=1)
+    pixels = CAMERA.pixels(seen[..., :2] / seen[..., 2:]) + draw.normal(0, PIXEL, (*seen.shape[:2], 2))
+    given = disturbed(exact, draw, METRES, RADIANS)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = recordings(*spoiled(given, pixels, fault, draw))
+        runs = [followed(each, each.effective_variance) for each in found]
+        trusted, diagnosis = np.array([run.trust().trusted for run in runs]), diagnose(found)
+    off = np.array([run.distance[-1] for run in runs]) / seen[-1, :, 2] - 1
+    return diagnosis, ~(np.abs(off) <= WRONG), trusted
+
+
+def study(files, count, faults, length, seed):
+    """Print a row of each fault: named first, falsely named, unexplained, and what is trusted."""
+    cases, rows = [*paths(files, count, length, seed)], []
+    for fault in faults:
+        wanted = fault.removesuffix(" twice").removesuffix(" half").split(",")[0]
+        found = []
+        for name, exact, points, seeds in cases:
+            diagnosis, wrong, trusted = judged(exact, points, fault, np.random.default_rng(seeds))
+            said = diagnosis.named if diagnosis.explained or diagnosis.findings else "NOT AS KNOWN"
+            instead = [other for each in diagnosis.findings for other in each.instead]
+            alike = said != wanted and (wanted in instead or (said == "nothing" and wanted in diagnosis.not_told))
+            right, false = said == wanted, said not in (wanted, "NOT AS KNOWN", "nothing") and not alike
+            bad = trusted & wrong
+            left = not diagnosis.explained
+            trust = [bad.sum(), (trusted & left).sum(), (bad & (diagnosis.named == "nothing")).sum()]
+            found.append([right, alike, false, left, len(wrong), *trust])
+            if not right:
+                print(f"  {fault}: {name}: {diagnosis.sentence[:200]}", flush=True)
+        rows.append((fault, np.sum(found, axis=0), len(found)))
+        print(row(*rows[-1]), flush=True)
+    print(
+        f"\n{'fault':34} named alike false unexplained; tracks wrong+trusted unexplained+trusted nothing+wrong+trusted"
+    )
+    for each in rows:
+        print(row(*each))
+    main = [(total, number) for fault, total, number in rows if fault in FAULTS]
+    if main:
+        print(row("ALL TWELVE", np.sum([total for total, _ in main], axis=0), sum(number for _, number in main)))
+
+
+def row(fault, total, count):
+    """A row of the table."""
+    right, alike, false, left, tracks, bad, unexplained, silent = total
+    return (
+        f"{fault:34} {right:3.0f}/{count} {alike:5.0f} {false:5.0f} {left:11.0f}; {tracks:6.0f} {bad:13.0f} "
+        f"{unexplained:19.0f} {silent:21.0f}"
+    )
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    parser.add_argument("files", nargs="+")
+    parser.add_argument("--paths", type=int, default=20)
+    parser.add_argument("--faults", nargs="+", default=[*FAULTS, *MORE])
+    parser.add_argument("--length", type=float, default=8)
+    parser.add_argument("--seed", type=int, default=0)
+    asked = parser.parse_args()
+    study(asked.files, asked.paths, asked.faults, asked.length, asked.seed)
+    print(f"{process_time():.0f} s of computing")
