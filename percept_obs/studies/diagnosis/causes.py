@@ -183,6 +183,11 @@ class MixUp:
     asks: str = field(default="", kw_only=True)
     fisheye: bool = field(default=False, kw_only=True)
 
+    @property
+    def plain(self) -> bool:
+        """True if it is of signs or axes alone, which any motion may have."""
+        return not (self.own or self.asks or self.fisheye)
+
     def can_be(self, errors: PoseErrors | None) -> bool:
         """Return True if a motion with such errors of its poses may have it."""
         mounted = errors is not None and errors.mount is not None

@@ -112,7 +112,8 @@ def search(tracks: tuple[Track, ...], noise: float | None) -> Found:
     estimates |= best.estimates(keys)
     if switch is not None:
         needed = {"mismatch": (bare, ())} | needed
-    alike = [each for each in screened[1:] if not each.wrong and each.rms < LIMITS.alike * bare.rms + FINEST / 10]
+    plain = [each for each in screened[1:] if MIX_UPS[each.mix_up].plain and not each.wrong]
+    alike = [each for each in plain if each.rms < LIMITS.alike * bare.rms + FINEST / 10]
     told = [key for key in keys if LIMITS.surely * estimates[key].deviation < CAUSES[key].usual]
     hidden = [key for key in CAUSES if key not in told]
     if explained and best.mix_up == "nothing":
@@ -172,8 +173,7 @@ def _screened(bare: Fit, noise: float | None) -> list[Fit]:
     names: list[str] = []
     turned: list[str] = []
     for name, mix_up in MIX_UPS.items():
-        special = bool(mix_up.own) or mix_up.fisheye
-        if name == "nothing" or (explained and (special or mix_up.asks)) or (special and not both):
+        if name == "nothing" or (explained and not mix_up.plain) or ((mix_up.own or mix_up.fisheye) and not both):
             continue
         if all(mix_up.can_be(track.motion.errors) for track in tracks):
             (turned if MOUNT in mix_up.own else names).append(name)
@@ -220,8 +220,7 @@ def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> 
     better = sorted((each for each in others if each.typical < first.typical), key=lambda each: each.typical)
     for other in (_joint(each, keys) for each in better[: LIMITS.tried]):
         most = LIMITS.most_left * float(np.median([track.spread for track in other.tracks]))
-        mix_up = MIX_UPS[other.mix_up]
-        plain = not (mix_up.own or mix_up.asks or mix_up.fisheye)
+        plain = MIX_UPS[other.mix_up].plain
         if _explained(other, noise) or (plain and other.typical < min(best.typical / LIMITS.worse, most)):
             best = min(best, other, key=lambda each: (not _explained(each, noise), each.typical))
     return best
