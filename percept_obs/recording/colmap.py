@@ -148,7 +148,7 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
         positive(rate=rate)
     place = Path(folder)
     try:
-        lenses, heads, bodies, world = (_binary if (place / "images.bin").is_file() else _text)(place)
+        lenses, heads, bodies, world = (_binary if (place / "cameras.bin").is_file() else _text)(place)
         names = [head[9] for head in heads]
         numbers = np.array([head[1:8] for head in heads], dtype=float).reshape(len(heads), 7)
         used = {head[8] for head in heads}

@@ -150,21 +150,22 @@ class TextTable:
         time = self.seconds(name, clock)
         again = np.append(False, np.diff(time) == 0)
         kept = time[~again]
-        step = float(np.median(np.abs(np.diff(kept)))) if len(kept) > 1 else 0.0
+        step = float(np.median(np.abs(np.diff(kept)))) if len(kept) > 1 else USUAL_STEP
         texts = [text for text in self.columns[name].categories[:1000] if "e" in text.lower()]
-        rounded = clock.tick * 10.0 ** min((int(Decimal(text).as_tuple().exponent) for text in texts), default=-99)
-        lost = f"{self.file} has times such as {texts[0]}, rounded to {rounded:.1g} s" if texts else ""
-        lost += ", as a spreadsheet stores them"
-        if rounded > max(step, SHORTEST_STEP) / 2:
-            raise ValueError(f"{lost}: the steps between its rows are lost; export it again, with the times as text")
+        rounded = clock.tick * 10.0 ** min((Decimal(text).as_tuple().exponent for text in texts), default=-99)  # type: ignore[type-var]
         if rounded > ROUGH * step:
-            warn(Unlikely(f"{lost}: the steps of {step:.3g} s between its rows are wrong by as much"))
+            said = f"{self.file} has times such as {texts[0]}, rounded to {rounded:.1g} s as a spreadsheet stores them"
+            if rounded > step / 2:
+                raise ValueError(
+                    f"{said}: the steps between its rows are lost; export it again, with the times as text"
+                )
+            warn(Unlikely(f"{said}: the steps of {step:.3g} s between its rows are wrong by as much"))
         if again.any():
             said = f"{again.sum()} of {len(time)} rows of {self.file} have the time of the row before"
             if repeated == "refuse":
                 raise ValueError(f'{said}, the first is row {again.argmax() + 1}; repeated="drop" leaves them out')
             warn(Unlikely(f"{said}, and are left out"))
-        if len(kept) > 1 and (not SHORTEST_STEP <= step <= LONGEST_STEP or np.abs(kept).max() > LATEST):
+        if not SHORTEST_STEP <= step <= LONGEST_STEP or np.abs(kept).max() > LATEST:
             unit = min(TICKS, key=lambda unit: abs(math.log(step / clock.tick * TICKS[unit] / USUAL_STEP)))
             raise ValueError(
                 f"{self.file} has times up to {kept[-1]:.4g} s, with {step:.3g} s from row to row, which cannot be; if "
