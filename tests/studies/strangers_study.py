@@ -3,7 +3,7 @@
 python tests/studies/strangers_study.py FILE... [--paths 20] [--faults "poses inverted" ...] [--length 8] [--seed 0]
 
 The files are poses in the TUM or EuRoC format, or dataset3.mat of UTIAS; the paths are those of paths_study.py.  The
-camera sits on a body with a mount such as EuRoC's; its poses have a millimetre and 0.05 degrees of noise, at 30 a
+camera sits on a body with a mount such as EuRoC's; its poses have a millimetre and 0.05 degrees of noise, at 20 a
 second, and the images of points at rest half a pixel.  Then somebody makes one mistake with them.
 """
 
@@ -22,7 +22,7 @@ from percept_obs import PixelCamera, diagnose, read_euroc, read_tum
 from percept_obs.recording.poses import Poses
 from percept_obs.recording.utias import utias_tracks
 
-RATE, METRES, RADIANS = 30, 1e-3, np.radians(0.05)
+RATE, METRES, RADIANS = 20, 1e-3, np.radians(0.05)
 LENS = (-0.28, 0.07, 0.0, 0.0)
 FAULTS = (
     *("poses inverted", "quaternion order", "u and v exchanged", "focal length twice", "focal length half"),
@@ -44,20 +44,21 @@ def poses_of(file):
 
 
 def paths(files, count, length, seed):
-    """So many windows of the files, evenly spread: the camera's exact poses, and places that it sees."""
-    found = []
+    """As many windows of each file: the camera's exact poses, places that it sees, and seeds."""
     for file in files:
         poses, key = poses_of(file), zlib.crc32(Path(file).stem.encode())
-        knot = knots(poses)
-        for begin in np.arange(poses.time[0] + 1, poses.time[-1] - length - 1, length):
+        knot, begins = knots(poses), np.arange(poses.time[0] + 1, poses.time[-1] - length - 1, length)
+        found = 0
+        for begin in np.random.default_rng([seed, key]).permutation(begins):
             one = window(knot, begin, length, np.random.default_rng([seed, key, int(begin)]))
             if one is not None:
+                found += 1
                 _, places, turning, points = one
                 time = begin + np.arange(int(length * RATE) + 1) / RATE
                 exact = Poses(time - begin, places(time), turning(time).as_quat())
-                found.append((f"{Path(file).stem} {begin:.0f} s", exact, points, [seed, key, int(begin)]))
-    for k in np.unique(np.linspace(0, len(found) - 1, min(count, len(found))).round().astype(int)):
-        yield found[k]
+                yield f"{Path(file).stem} {begin:.0f} s", exact, points, [seed, key, int(begin)]
+            if found == np.ceil(count / len(files)):
+                break
 
 
 def spoiled(poses, pixels, fault, draw):

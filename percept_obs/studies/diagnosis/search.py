@@ -17,7 +17,6 @@ from percept_obs.studies.diagnosis.causes import (
     FOCAL,
     LARGEST_OFFSET,
     MIX_UPS,
-    MOUNT,
     OFFSET,
     SHUTTER,
 )
@@ -39,7 +38,7 @@ class Limits:
     tried: int = (
         2  # mix-ups with which wrong numbers are fitted, those that explain most without, for most time goes there
     )
-    turns: int = 2  # of the 24 turns onto axes with which the numbers of a mount are fitted, those that leave least
+    guessed: int = 2  # mix-ups of a kind that are fitted, those with which linear guesses leave least
     apart: float = 3.0  # times what is left of the other tracks, which shows that a track may be of two points
     places: int = 12  # at which the second point may begin or end at first: a part of the track between two shows it
     rounds: int = 3  # times that each sample is then given to the point that explains it better
@@ -164,24 +163,33 @@ def _reported(best: Fit) -> list[str]:
 
 
 def _screened(bare: Fit, noise: float | None) -> list[Fit]:
-    """Fits with each mix-up that can be, and with half and twice the focal length; the plain ones if all is explained.
+    """Fits with mix-ups that can be: all plain ones, and if the tracks are not explained those that a guess prefers.
 
-    Of the turns of a mount those are fitted with which a linear guess leaves least.
+    Mix-ups with numbers of their own, and half and twice the focal length, are asked after those without.
     """
-    tracks, explained = bare.tracks, _explained(bare, noise)
+    tracks = bare.tracks
+
+    def best(names: Sequence[str]) -> list[str]:
+        left = {name: sum(_squares(track, name, _own(name)[2]) for track in tracks) for name in names}
+        return sorted(left, key=left.__getitem__)[: LIMITS.guessed]
+
     both = all(track.outputs.shape[1] == 2 and len(track.whole) for track in tracks)
-    names: list[str] = []
-    turned: list[str] = []
-    for name, mix_up in MIX_UPS.items():
-        if name == "nothing" or (explained and not mix_up.plain) or ((mix_up.own or mix_up.fisheye) and not both):
-            continue
-        if all(mix_up.can_be(track.motion.errors) for track in tracks):
-            (turned if MOUNT in mix_up.own else names).append(name)
-    turned.sort(key=lambda name: sum(_squares(track, name, {}) for track in tracks))
-    found = [fit(tracks, *_own(name)) for name in (*names, *turned[: LIMITS.turns])]
-    if not explained:
-        found += [fit(tracks, "nothing", [FOCAL], {FOCAL: np.array([size])}) for size in (-math.log(2), math.log(2))]
-    return found
+    can_be = {
+        name: each
+        for name, each in MIX_UPS.items()
+        if name != "nothing" and (both or each.plain) and all(each.can_be(track.motion.errors) for track in tracks)
+    }
+    plain = [name for name, each in can_be.items() if each.plain]
+    if _explained(bare, noise):
+        return [fit(tracks, name, ()) for name in plain]
+    others = best([name for name, each in can_be.items() if not each.plain and not each.own])
+    found = [fit(tracks, name, ()) for name in (*plain, *others)]
+    if any(_explained(each, noise) for each in found):
+        return found
+    own = dict.fromkeys(each.key for each in can_be.values() if each.own)
+    groups = [best([name for name, each in can_be.items() if each.own and each.key == key]) for key in own]
+    found += [fit(tracks, *_own(name)) for names in groups for name in names]
+    return found + [fit(tracks, "nothing", [FOCAL], {FOCAL: np.array([size])}) for size in (-math.log(2), math.log(2))]
 
 
 def _explained(found: Fit, noise: float | None) -> bool:
@@ -208,13 +216,13 @@ def _trimmed(found: Fit, noise: float | None) -> Fit:
 def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> Fit:
     """Fit of all numbers, with the mix-up that explains the samples; the first fit has none."""
     first, *others = screened
+    told = [] if _explained(first, noise) else [each for each in others if _explained(each, noise)]
+    other = _fewest(_joint(max(told, key=lambda each: each.gain(first)), keys)) if told else None
+    if other and not any(each.wrong for each in told):
+        return other
     best = _joint(first, keys)
-    if _explained(first, noise):
-        return best
-    told = [each for each in others if _explained(each, noise)]
-    if told:
-        other = _fewest(_joint(max(told, key=lambda each: each.gain(first)), keys))
-        return other if not _explained(best, noise) or other.gain(_fewest(best)) > 0 else best
+    if other and (not _explained(best, noise) or other.gain(_fewest(best)) > 0):
+        return other
     if _explained(best, noise):
         return best
     better = sorted((each for each in others if each.typical < first.typical), key=lambda each: each.typical)
