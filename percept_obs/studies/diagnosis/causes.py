@@ -7,15 +7,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from itertools import permutations, product
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.recording.pose_errors import PoseErrors
-
-if TYPE_CHECKING:
-    from scipy.spatial.transform import Rotation
 
 LARGEST_OFFSET = 0.25
 """Largest offset in seconds between images and motion that is tried."""
@@ -99,115 +95,89 @@ NUMBERS = MappingProxyType(CAUSES | OWN)
 VEHICLE = np.array([[0.0, -1, 0], [0, 0, -1], [1, 0, 0]])
 
 
-@dataclass(frozen=True, eq=False)
-class Placed:
-    """Poses at N times, as they are believed: R, places by the unit of length, shape (N, 3), and the camera's mount."""
-
-    rotation: Rotation
-    position: Array
-    mount: tuple[Array, Array] | None
-
-
-Change = Callable[[Array, Array, Placed | None], tuple[Array, Array]]
-"""Function of the motion's A and b, shapes (T, 3, 3) and (T, 3), as they are believed; it returns the right ones.
-
-Some ask for the poses then.
-"""
+Mount = tuple[Array, Array] | None
+Change = Callable[[Array, Array], tuple[Array, Array]]
+"""Function of the motion's A and b, shapes (T, 3, 3) and (T, 3), as they are believed; it returns the right ones."""
 
 
 def _axes(into: Array) -> Change:
-    return lambda A, b, _: (into @ A @ into.T, b @ into.T)
+    return lambda A, b: (into @ A @ into.T, b @ into.T)
 
 
-def _vector(A: Array) -> Array:
-    """Angular velocities w, shape (T, 3), of A = -w x."""
-    return np.stack([A[:, 1, 2], A[:, 2, 0], A[:, 0, 1]], axis=-1)
+def _same(A: Array, b: Array) -> tuple[Array, Array]:
+    return A, b
 
 
-def _motion(w: Array, v: Array) -> tuple[Array, Array]:
-    """A and b of angular velocities w and velocities v along the camera's axes."""
-    return np.cross(np.eye(3), w[:, None]).swapaxes(1, 2), -v
+def _back(poses: Array, mount: Mount) -> Array:
+    """Poses, matrices of shape (T, 4, 4), with their rotations inverted."""
+    found = poses.copy()
+    found[:, :3, :3] = poses[:, :3, :3].swapaxes(1, 2)
+    return found
 
 
-def _inverted(A: Array, b: Array, placed: Placed | None) -> tuple[Array, Array]:
-    """Motion of poses (R, p) that are R^T and -R^T p of the camera."""
-    assert placed is not None
-    w = placed.rotation.apply(_vector(A))
-    return _motion(-w, np.cross(w, placed.position) + placed.rotation.apply(b))
+def _rolled(steps: int) -> Callable[[Array, Mount], Array]:
+    """Change of poses to those whose quaternions x, y, z, w are the believed ones' numbers, moved on by some places."""
 
-
-def _turned(order: Array) -> Change:
-    """Change to the motion of quaternions x, y, z, w that are the believed ones' in another order, or with signs."""
-
-    def undone(A: Array, b: Array, placed: Placed | None) -> tuple[Array, Array]:
+    def right(poses: Array, mount: Mount) -> Array:
         from scipy.spatial.transform import Rotation
 
-        assert placed is not None
-        believed, w = placed.rotation.as_quat(), _vector(A)
-        doubled = np.column_stack(  # the rate of q is q w / 2
-            [believed[:, 3:] * w + np.cross(believed[:, :3], w), -(believed[:, :3] * w).sum(axis=1)]
-        )
-        right, rate = believed @ order.T, doubled @ order.T
-        w = right[:, 3:] * rate[:, :3] - rate[:, 3:] * right[:, :3] - np.cross(right[:, :3], rate[:, :3])
-        return _motion(w, Rotation.from_quat(right).inv().apply(placed.rotation.apply(-b)))
+        found, quaternions = poses.copy(), Rotation.from_matrix(poses[:, :3, :3]).as_quat()
+        found[:, :3, :3] = Rotation.from_quat(np.roll(quaternions, steps, axis=1)).as_matrix()
+        return found
 
-    return undone
+    return right
 
 
-def _remounted(times: int) -> Change:
-    """Change to the motion of a camera that the inverse of the believed mount, so many times, moves to its place."""
-
-    def undone(A: Array, b: Array, placed: Placed | None) -> tuple[Array, Array]:
-        assert placed is not None
-        assert placed.mount is not None
-        place, turn = placed.mount
-        for _ in range(times):
-            A, b = turn @ A @ turn.T, (b - A @ (turn.T @ place)) @ turn.T
-        return A, b
-
-    return undone
+def _remounted(poses: Array, mount: Mount) -> Array:
+    """Poses of a camera whose believed mount is the inverse of the right one."""
+    assert mount is not None
+    believed = np.eye(4)
+    believed[:3, 3], believed[:3, :3] = mount
+    back = np.linalg.inv(believed)
+    return np.asarray(poses @ back @ back)
 
 
 @dataclass(frozen=True)
 class MixUp:
     """Signs, axes, poses or files mixed up, and the motion without it.
 
-    Its `own` numbers are fitted with it, each from some start.  It may ask for the `poses` or the "mount" in them, or
-    that there is "no mount"; `fisheye` says that the images are those of an equidistant lens.
+    It undoes the motion's rates, or, if it has a function for it, the poses behind them.  Its `own` numbers are fitted
+    with it, each from some start; `fisheye` says that the images are those of an equidistant lens.
     """
 
     key: str
     sentence: str
-    undone: Change
+    undone: Change = _same
+    poses: Callable[[Array, Mount], Array] | None = None
     own: Mapping[str, tuple[float, ...]] = field(default_factory=dict, kw_only=True)
-    asks: str = field(default="", kw_only=True)
     fisheye: bool = field(default=False, kw_only=True)
 
     @property
     def plain(self) -> bool:
         """True if it is of signs or axes alone, which any motion may have."""
-        return not (self.own or self.asks or self.fisheye)
+        return not (self.own or self.poses or self.fisheye)
 
     def can_be(self, errors: PoseErrors | None) -> bool:
         """Return True if a motion with such errors of its poses may have it."""
         mounted = errors is not None and errors.mount is not None
-        return {"poses": errors is not None, "mount": mounted, "no mount": not mounted}.get(self.asks, True)
+        if MOUNT in self.own or self.poses is _remounted:
+            return mounted is (self.poses is _remounted)
+        return errors is not None or self.poses is None
 
 
 CAMERA = "it is needed in the camera's (x right, y down, z forward)"
 FISHEYE = "the lens is a fisheye, equidistant, and its images were divided as those of a pinhole"
+OF_WORLD = "are those of the world in the camera, and were given as the camera's in the world"
 SIZES = "the images have another size than those of the calibration, so that focal length and principal point are wrong"
 LEFT_OUT = "the motion is that of another body, such as an IMU, and not of the camera on it: give its mount"
-IDENTITY: Change = lambda A, b, _: (A, b)  # noqa: E731
-
 SIGNED = [np.diag(signs)[list(order)] for order in permutations(range(3)) for signs in product((1.0, -1), repeat=3)]
 TURNS = [turn for turn in SIGNED if np.linalg.det(turn) > 0]
 """The 24 turns that bring axes onto axes."""
 
 _MIX_UPS = {
-    "nothing": MixUp("nothing", "", IDENTITY),
-    "w": MixUp("sign of w_c", "the angular velocity has the wrong sign", lambda A, b, _: (np.swapaxes(A, 1, 2), b)),
-    "v": MixUp("sign of v", "the translation has the wrong sign", lambda A, b, _: (A, -b)),
+    "nothing": MixUp("nothing", ""),
+    "w": MixUp("sign of w_c", "the angular velocity has the wrong sign", lambda A, b: (np.swapaxes(A, 1, 2), b)),
+    "v": MixUp("sign of v", "the translation has the wrong sign", lambda A, b: (A, -b)),
     "y": MixUp("flipped axis", "the y axis of the images is flipped", _axes(np.diag([1.0, -1, 1]))),
     "x": MixUp("flipped axis", "the x axis of the images is flipped", _axes(np.diag([-1.0, 1, 1]))),
     "xy": MixUp("flipped axis", "the images are upside down", _axes(np.diag([-1.0, -1, 1]))),
@@ -224,56 +194,31 @@ _MIX_UPS = {
         f"the motion is in a renderer's frame (x right, y up, z back); {CAMERA}",
         _axes(np.diag([1.0, -1, -1])),
     ),
-    "world": MixUp(
-        "poses inverted",
-        "the poses are those of the world in the camera, and were given as the camera's in the world",
-        _inverted,
-        asks="poses",
+    "world": MixUp("poses inverted", f"the poses {OF_WORLD}", poses=lambda poses, _: np.linalg.inv(poses)),
+    "turned back": MixUp("rotations inverted", f"the rotations {OF_WORLD}", poses=_back),
+    "w first": MixUp("quaternion order", "quaternions w, x, y, z were read as x, y, z, w", poses=_rolled(-1)),
+    "w last": MixUp("quaternion order", "quaternions x, y, z, w were read as w, x, y, z", poses=_rolled(1)),
+    "mount": MixUp(
+        "mount inverted", "the mount is the body's in the camera, given as the camera's on the body", poses=_remounted
     ),
-    "turned back": MixUp(
-        "rotations inverted",
-        "the rotations are those of the world in the camera, while the places are the camera's in the world",
-        _turned(np.diag([-1.0, -1, -1, 1])),
-        asks="poses",
-    ),
-    "w first": MixUp(
-        "quaternion order",
-        "the quaternions are w, x, y, z and were read as x, y, z, w",
-        _turned(np.roll(np.eye(4), 1, axis=1)),
-        asks="poses",
-    ),
-    "w last": MixUp(
-        "quaternion order",
-        "the quaternions are x, y, z, w and were read as w, x, y, z",
-        _turned(np.roll(np.eye(4), -1, axis=1)),
-        asks="poses",
-    ),
-    "mount backwards": MixUp(
-        "mount inverted",
-        "the mount is that of the body in the camera, and was given as the camera's on the body",
-        _remounted(2),
-        asks="mount",
-    ),
-    "mount needless": MixUp("mount needless", "the poses are the camera's already", _remounted(1), asks="mount"),
     "uv": MixUp(
         "u and v exchanged",
         "u and v are exchanged: v goes along the columns of the image",
         _axes(np.eye(3)[[1, 0, 2]]),
         own={CENTRE: (0.0, 0.0)},
     ),
-    "fisheye": MixUp("fisheye ignored", FISHEYE, IDENTITY, fisheye=True),
+    "fisheye": MixUp("fisheye ignored", FISHEYE, fisheye=True),
 }
 _MIX_UPS |= {
     f"size {ratio:g}": MixUp(
         "image size",
         SIZES,
-        IDENTITY,
         own={FOCAL: (math.log(ratio),), CENTRE: (0.6 * (ratio - 1), 0.4 * (ratio - 1))},
     )
     for ratio in (0.5, 1, 2)
 }
 _MIX_UPS |= {
-    f"mount {k}": MixUp("mount left out", LEFT_OUT, _axes(turn), own={MOUNT: (0.0,) * 6}, asks="no mount")
+    f"mount {k}": MixUp("mount left out", LEFT_OUT, _axes(turn), own={MOUNT: (0.0,) * 6})
     for k, turn in enumerate(TURNS)
 }
 MIX_UPS = MappingProxyType(_MIX_UPS)

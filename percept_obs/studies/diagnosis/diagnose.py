@@ -29,7 +29,7 @@ class Finding:
     key : str
         "time offset", "focal length", "distortion ignored", "gyro bias", "scale drift", "rolling shutter",
         "sign of w_c", "sign of v", "flipped axis", "frames swapped", "poses inverted", "rotations inverted",
-        "quaternion order", "mount inverted", "mount needless", "mount left out", "u and v exchanged", "image size",
+        "quaternion order", "mount inverted", "mount left out", "u and v exchanged", "image size",
         "fisheye ignored", "mismatch", "outliers" or "pixels".
     sentence : str
         The mistake in words.

@@ -153,8 +153,8 @@ def _own(mix_up: str) -> tuple[str, list[str], dict[str, Array]]:
 
 def _together(mix_up: str, keys: Sequence[str]) -> list[str]:
     """Keys of the numbers that can be fitted with a mix-up; poses drift by no bias."""
-    posed = MIX_UPS[mix_up].asks in ("poses", "mount")
-    return [*dict.fromkeys([*MIX_UPS[mix_up].own, *(key for key in keys if not (posed and key in (BIAS, DRIFT)))])]
+    kept = [key for key in keys if not (MIX_UPS[mix_up].poses and key in (BIAS, DRIFT))]
+    return [*dict.fromkeys([*MIX_UPS[mix_up].own, *kept])]
 
 
 def _reported(best: Fit) -> list[str]:

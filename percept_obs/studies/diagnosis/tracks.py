@@ -168,7 +168,7 @@ def seen(track: Track, point: Array, mix_up: str, wrong: Mapping[str, Array], as
         moved = by_body @ (way.spline(times, 1) @ point)[:, :, None]
         found |= {OFFSET: -moved, SHUTTER: moved * track.rows[:, None, None]}
     if BIAS in asked or DRIFT in asked:
-        spins, _ = MIX_UPS[mix_up].undone(SPINS, np.zeros((3, 3)), None)
+        spins, _ = MIX_UPS[mix_up].undone(SPINS, np.zeros((3, 3)))
         turned = np.einsum("aij,nj->nia", spins, way.maps[:, :3] @ point)
         shifted = -point[3] * (way.times - way.times[0])[:, None] * way.b
         changes = way.change(times, np.concatenate([turned, shifted[:, :, None]], axis=2))
