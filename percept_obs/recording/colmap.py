@@ -24,6 +24,8 @@ from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked, load_pandas, positive
 
 FISHEYES = ("OPENCV_FISHEYE", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE")
+OWN_LENS = ("FOV", "THIN_PRISM_FISHEYE")
+"""Models with a lens that no `PixelCamera` has."""
 MODELS = MappingProxyType(
     {
         "SIMPLE_PINHOLE": (0, 0, 1, 2),
@@ -33,18 +35,13 @@ MODELS = MappingProxyType(
         "OPENCV": tuple(range(8)),
         "OPENCV_FISHEYE": tuple(range(8)),
         "FULL_OPENCV": tuple(range(12)),
+        "FOV": tuple(range(5)),
         "SIMPLE_RADIAL_FISHEYE": (0, 0, 1, 2, 3),
         "RADIAL_FISHEYE": (0, 0, 1, 2, 3, 4),
+        "THIN_PRISM_FISHEYE": tuple(range(12)),
     }
 )
-"""Places of fx, fy, cx, cy and the lens among the parameters of COLMAP's models."""
-
-BINARY = (
-    *(("SIMPLE_PINHOLE", 3), ("PINHOLE", 4), ("SIMPLE_RADIAL", 4), ("RADIAL", 5), ("OPENCV", 8), ("OPENCV_FISHEYE", 8)),
-    *(("FULL_OPENCV", 12), ("FOV", 5), ("SIMPLE_RADIAL_FISHEYE", 4), ("RADIAL_FISHEYE", 5)),
-    ("THIN_PRISM_FISHEYE", 12),
-)
-"""Models in the order of their numbers in binary files, with the number of their parameters."""
+"""Places of fx, fy, cx, cy and the lens among the parameters of COLMAP's models, in the order of their numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,8 +156,9 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
                 f"{len(used)} cameras, {', '.join(sorted(used)[:5])}; a recording is of one: make it with a single one"
             )
         (model, width, height, *parameters) = lenses[min(used)]
-        if model not in MODELS:
-            raise ValueError(f"a camera of the model {model}, none of {', '.join(MODELS)}: undistort the images")
+        if model not in MODELS or model in OWN_LENS:
+            known = ", ".join(name for name in MODELS if name not in OWN_LENS)
+            raise ValueError(f"a camera of the model {model}, none of {known}: undistort the images")
         time = _times(names, rate, clock)
         fx, fy, cx, cy, *lens = (float(parameters[k]) for k in MODELS[model])
         lens = [*lens, *[0.0] * (-len(lens) % 4)]
@@ -205,7 +203,8 @@ def _binary(place: Path) -> Parts:
     data, (count,), at = _packed(place / "cameras.bin")
     for _ in range(count):
         number, model, *size = struct.unpack_from("<iiQQ", data, at)
-        name, many = BINARY[model]
+        name, places = [*MODELS.items()][model]
+        many = places[-1] + 1
         lenses[str(number)] = [name, *size, *struct.unpack_from(f"<{many}d", data, at + 24)]
         at += 24 + 8 * many
     data, (count,), at = _packed(place / "images.bin")

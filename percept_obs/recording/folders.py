@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
+from typing import Any
 
 from percept_obs.recording.camera_files import Mount, read_mount
 from percept_obs.recording.colmap import ColmapModel, read_colmap
@@ -93,72 +91,75 @@ def read_folder(path: PathLike, rate: float | None = None, repeated: Repeated = 
     place = Path(path)
     if not place.is_dir():
         raise FileNotFoundError(f"there is no folder {os.fspath(path)!r}; name one of COLMAP, EuRoC, TUM or KITTI")
-    readers: tuple[Callable[[Path, float | None, Repeated], Folder | None], ...] = (_colmap, _euroc, _kitti, _tum)
-    for read in readers:
+    readers = {"COLMAP": _colmap, "EuRoC": _euroc, "KITTI": _kitti, "TUM": _tum}
+    for kind, read in readers.items():
         if found := read(place, rate, repeated):
-            return found
+            said, fields = found
+            return Folder(kind, f"This is a folder of {kind}, with {', '.join(said)}.", **fields)
     there = ", ".join(sorted(each.name for each in place.iterdir())[:8]) or "nothing"
     raise ValueError(
         f"{os.fspath(path)} is no folder of COLMAP (cameras.bin or .txt), EuRoC (mav0), TUM (a trajectory) or KITTI "
-        f"(times.txt and calib.txt); it has {there}"
+        f"(poses beside times.txt and calib.txt); it has {there}"
     )
 
 
-def _said(kind: str, *found: str) -> str:
-    return f"This is a folder of {kind}, with {', '.join(found) or 'nothing that fits'}."
+Found = tuple[list[str], dict[str, Any]] | None
+"""What is said, and the fields of `Folder`."""
 
 
-def _colmap(place: Path, rate: float | None, repeated: Repeated) -> Folder | None:
-    """A model of COLMAP."""
+def _colmap(place: Path, rate: float | None, repeated: Repeated) -> Found:
+    """Model of COLMAP."""
     for folder in (place, place / "sparse", place / "sparse" / "0"):
         if any((folder / f"images.{ending}").is_file() for ending in ("bin", "txt")):
             model = read_colmap(folder, rate)
-            said = _said("COLMAP", f"{len(model.poses.time)} images", f"{len(model.points)} points in {folder}")
-            return Folder("COLMAP", said, model.poses, model.camera, model=model)
+            said = [f"{len(model.poses.time)} images", f"{len(model.points)} points in {folder}"]
+            return said, {"poses": model.poses, "camera": model.camera, "model": model}
     return None
 
 
-def _euroc(place: Path, rate: float | None, repeated: Repeated) -> Folder | None:
-    """A sequence of EuRoC or TUM VI, of its first camera."""
+def _euroc(place: Path, rate: float | None, repeated: Repeated) -> Found:
+    """Sequence of EuRoC or TUM VI, of its first camera."""
+    said: list[str] = []
+    fields: dict[str, Any] = {}
     place = place / "mav0" if (place / "mav0").is_dir() else place
-    truth = [*place.glob("state_groundtruth*/data.csv"), *place.glob("mocap0/data.csv")]
-    imus, sensors = [*place.glob("imu0/data.csv")], [*place.glob("cam0/sensor.yaml")]
-    if not (truth or imus):
-        return None
-    poses = read_euroc(truth[0], repeated=repeated) if truth else None
-    camera, mount = (PixelCamera.from_yaml(sensors[0]), read_mount(sensors[0])) if sensors else (None, None)
-    imu = read_imu(imus[0], repeated=repeated) if imus else None
-    found = [f"{len(poses.time)} poses in {truth[0].parent.name}"] if poses else []
-    found += ["the camera cam0 and its mount"] if sensors else ["no mount, so that the poses are the body's"]
-    found += ["an IMU"] if imu else []
-    if poses and mount:
-        poses = poses.mounted(*mount)
-    return Folder("EuRoC", _said("EuRoC", *found), poses, camera, mount, imu)
+    for file in place.glob("cam0/sensor.yaml"):
+        fields |= {"camera": PixelCamera.from_yaml(file), "mount": read_mount(file)}
+        said.append("the camera cam0 and its mount")
+    for file in place.glob("imu0/data.csv"):
+        fields["imu"] = read_imu(file, repeated=repeated)
+        said.append("an IMU")
+    for file in [*place.glob("state_groundtruth*/data.csv"), *place.glob("mocap0/data.csv")][:1]:
+        poses = read_euroc(file, repeated=repeated)
+        fields["poses"] = poses.mounted(*fields["mount"]) if fields.get("mount") else poses
+        said.append(
+            f"{len(poses.time)} poses in {file.parent.name}, of the {'camera' if 'mount' in fields else 'body'}"
+        )
+    return (said, fields) if {"imu", "poses"} & {*fields} else None
 
 
-def _kitti(place: Path, rate: float | None, repeated: Repeated) -> Folder | None:
-    """A sequence of KITTI's odometry, of its left camera."""
+def _kitti(place: Path, rate: float | None, repeated: Repeated) -> Found:
+    """Sequence of KITTI's odometry, of its left camera."""
     near = [*place.glob("*.txt"), place.parent.parent / "poses" / f"{place.name}.txt"]
     files = [file for file in near if file.is_file() and kind_of(file) == "KITTI"]
     if not files:
         return None
-    times = place / "times.txt"
-    poses = read_kitti(files[0], times) if times.is_file() else read_kitti(files[0], rate=rate)
-    camera, calib = None, place / "calib.txt"
-    if calib.is_file() and kind_of(calib) == "calibration":
-        first = calib.read_text(encoding="utf-8").partition("\n")[0].split()[1:]
-        matrix = np.array(first, dtype=float).reshape(3, 4)
-        camera = PixelCamera((matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2]))
-    found = [f"{len(poses.time)} poses in {files[0].name}", *(["the left camera"] if camera else [])]
-    return Folder("KITTI", _said("KITTI", *found), poses, camera)
+    times, calibration = place / "times.txt", place / "calib.txt"
+    poses = read_kitti(files[0], times if times.is_file() else None, rate)
+    said, fields = [f"{len(poses.time)} poses in {files[0].name}"], {"poses": poses}
+    if calibration.is_file() and kind_of(calibration) == "calibration":
+        first = calibration.read_text(encoding="utf-8").partition("\n")[0].split()
+        fx, _, cx, _, _, fy, cy = map(float, first[1:8])
+        return [*said, "the left camera"], {**fields, "camera": PixelCamera((fx, fy), (cx, cy))}
+    return said, fields
 
 
-def _tum(place: Path, rate: float | None, repeated: Repeated) -> Folder | None:
-    """A sequence of TUM's benchmark; of several trajectories, the one named groundtruth."""
-    files = [file for file in sorted(place.glob("*.txt")) if kind_of(file) == "TUM"]
+def _tum(place: Path, rate: float | None, repeated: Repeated) -> Found:
+    """Sequence of TUM's benchmark; of several trajectories, the one named groundtruth."""
+    files = sorted(file for file in place.glob("*.txt") if kind_of(file) == "TUM")
+    files.sort(key=lambda file: "groundtruth" not in file.name)
     if not files:
         return None
-    file = next((file for file in files if "groundtruth" in file.name), files[0])
-    poses = read_tum(file, repeated=repeated)
-    others = [f"not read: {', '.join(each.name for each in files if each != file)}"] if len(files) > 1 else []
-    return Folder("TUM", _said("TUM", f"{len(poses.time)} poses in {file.name}", *others), poses)
+    poses = read_tum(files[0], repeated=repeated)
+    others = ", ".join(file.name for file in files[1:])
+    said = [f"{len(poses.time)} poses in {files[0].name}", *([f"and did not read {others}"] if others else [])]
+    return said, {"poses": poses}

@@ -146,10 +146,8 @@ def test_a_folder_of_euroc_has_the_cameras_poses(tmp_path):
     ):
         written(tmp_path, text, f"mav0/{name}")
     found = read_folder(tmp_path)
-    assert found.sentence == (
-        "This is a folder of EuRoC, with 20 poses in state_groundtruth_estimate0, the camera cam0 and its mount, "
-        "an IMU."
-    )
+    said = "the camera cam0 and its mount, an IMU, 20 poses in state_groundtruth_estimate0, of the camera."
+    assert found.sentence == f"This is a folder of EuRoC, with {said}"
     body = read_euroc(tmp_path / "mav0" / "state_groundtruth_estimate0" / "data.csv")
     np.testing.assert_allclose(found.poses.position, body.mounted(*found.mount).position)
     assert (found.camera.focal, found.imu.signal.times[0]) == ((458.0, 457.0), body.time[0])
@@ -169,7 +167,7 @@ def test_a_folder_of_tum_has_its_ground_truth(tmp_path):
     written(tmp_path, tum(), "groundtruth.txt")
     written(tmp_path, tum(), "estimate.txt")
     found = read_folder(tmp_path)
-    assert found.sentence == "This is a folder of TUM, with 20 poses in groundtruth.txt, not read: estimate.txt."
+    assert found.sentence == "This is a folder of TUM, with 20 poses in groundtruth.txt, and did not read estimate.txt."
 
 
 def test_a_folder_of_nothing_says_what_it_has(tmp_path):
