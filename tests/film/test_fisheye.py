@@ -21,7 +21,7 @@ LENS = PixelCamera((300, 300), (400, 300), (800, 600), (-0.01, 0.05, -0.05, 0.01
 
 def test_poses_through_a_fisheye_are_those_of_its_corners():
     places, time = Board().points, np.arange(5) / 10
-    turns = Rotation.from_rotvec(np.outer(time, [0.5, 1.0, 0.2]) + [np.pi, 0, 0])
+    turns = Rotation.from_rotvec(np.outer(time, [0.5, 1.0, 0.2]) + np.array([np.pi, 0, 0]))
     position = places.mean(axis=0) + np.stack([0.1 * time, 0 * time, 0.25 + 0 * time], axis=1)
     seen = np.stack([turns.inv().apply(place - position) for place in places], axis=1)
     corners = LENS.pixels(seen[..., :2] / seen[..., 2:])
@@ -40,7 +40,7 @@ def test_pictures_of_a_fisheye_are_straightened():
         cv2.circle(picture, tuple(map(int, np.round(place))), 4, 255, -1)
     small = (cv2.imencode(".png", picture)[1].tobytes(),)
     straight = undistorted(SimpleNamespace(small=small, shown=np.zeros(1)), LENS)
-    shown = cv2.imdecode(np.frombuffer(straight.pictures[0], np.uint8), cv2.IMREAD_UNCHANGED)
+    shown = cv2.imdecode(np.frombuffer(straight.images[0], np.uint8), cv2.IMREAD_UNCHANGED)
     places = np.round(LENS.straight.pixels(image)).astype(int)
     inside = ((places > 5) & (places < [795, 595])).all(axis=1)
     assert inside.sum() > 20
