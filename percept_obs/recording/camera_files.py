@@ -1,4 +1,4 @@
-"""Files of cameras in YAML: those of OpenCV and ROS, Kalibr's camchains, and EuRoC's sensors."""
+"""Files of cameras in YAML: those of OpenCV, ROS and VINS, Kalibr's camchains, and EuRoC's sensors."""
 
 from __future__ import annotations
 
@@ -36,6 +36,10 @@ class Mount(NamedTuple):
 def fields_of_camera(path: PathLike, camera: str | None) -> dict[str, Any]:
     """Fields of the `PixelCamera` in a file; see `PixelCamera.from_yaml`."""
     file, found = _camera(path, camera)
+    numbers = found.get("projection_parameters")
+    if isinstance(numbers, dict) and {"fx", "fy", "cx", "cy"} <= numbers.keys():  # of VINS
+        found["intrinsics"] = [numbers[key] for key in ("fx", "fy", "cx", "cy")]
+        found["distortion_coeffs"] = [*(found.get("distortion_parameters") or {}).values()]
     lens = str(found.get("distortion_model") or "").lower()
     if found.get("camera_model", "pinhole") != "pinhole" or lens not in LENSES:
         raise ValueError(

@@ -69,6 +69,22 @@ cam1:
   distortion_model: equidistant
   intrinsics: [1, 1, 0, 0]
 """
+VINS = """%YAML:1.0
+---
+model_type: PINHOLE
+image_width: 752
+image_height: 480
+distortion_parameters:
+   k1: -0.28
+   k2: 0.07
+   p1: 1.0e-05
+   p2: -2.0e-05
+projection_parameters:
+   fx: 458.5
+   fy: 457.25
+   cx: 367.5
+   cy: 248.0
+"""
 
 
 def written(folder, text):
@@ -76,7 +92,7 @@ def written(folder, text):
     return folder / "camera.yaml"
 
 
-@pytest.mark.parametrize("text", [ROS, OPENCV, EUROC, KALIBR], ids=["ROS", "OpenCV", "EuRoC", "Kalibr"])
+@pytest.mark.parametrize("text", [ROS, OPENCV, EUROC, KALIBR, VINS], ids=["ROS", "OpenCV", "EuRoC", "Kalibr", "VINS"])
 def test_a_camera_is_read_from_the_files_of_calibration(tmp_path, text):
     camera = PixelCamera.from_yaml(written(tmp_path, text), "cam0" if "cam0" in text else None)
     assert (camera.focal, camera.centre, camera.size) == (EXPECTED.focal, EXPECTED.centre, EXPECTED.size)
