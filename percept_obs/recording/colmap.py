@@ -157,8 +157,8 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
             )
         (model, width, height, *parameters) = lenses[min(used)]
         if model not in MODELS or model in OWN_LENS:
-            known = ", ".join(name for name in MODELS if name not in OWN_LENS)
-            raise ValueError(f"a camera of the model {model}, none of {known}: undistort the images")
+            told = ", ".join(name for name in MODELS if name not in OWN_LENS)
+            raise ValueError(f"a camera of the model {model}, none of {told}: undistort the images")
         time = _times(names, rate, clock)
         fx, fy, cx, cy, *lens = (float(parameters[k]) for k in MODELS[model])
         lens = [*lens, *[0.0] * (-len(lens) % 4)]

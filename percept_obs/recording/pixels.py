@@ -160,8 +160,8 @@ class PixelCamera:
         """Return the pixels of image coordinates (y1, y2), shape (..., 2)."""
         image = numbers(image, "the image coordinates", 2)
         if self.lens == "equidistant":
-            radius = np.maximum(np.linalg.norm(image, axis=-1, keepdims=True), np.finfo(float).tiny)
-            image = image * self._seen_at(np.arctan(radius))[0] / radius
+            radius = np.maximum(np.linalg.norm(image, axis=-1)[..., None], np.finfo(float).tiny)
+            image = np.asarray(image * self._seen_at(np.arctan(radius))[0] / radius)
         elif any(self.distortion):
             image = np.stack(self._distorted_from_undistorted()(*np.moveaxis(image, -1, 0))[:2], axis=-1)
         return image * self.focal + self.centre
@@ -212,7 +212,7 @@ class PixelCamera:
 
     def _image_of_angles(self, distorted: Array) -> Array:
         """Image coordinates behind an equidistant lens, by Newton's method; NaN where no direction ahead is seen."""
-        radius = np.linalg.norm(distorted, axis=-1, keepdims=True)
+        radius: Array = np.asarray(np.linalg.norm(distorted, axis=-1))[..., None]
         angle = np.minimum(radius, ASIDE)
         with np.errstate(all="ignore"):
             for _ in range(MOST_TRIALS):

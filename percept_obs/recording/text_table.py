@@ -152,7 +152,7 @@ class TextTable:
         kept = time[~again]
         step = float(np.median(np.abs(np.diff(kept)))) if len(kept) > 1 else USUAL_STEP
         texts = [text for text in self.columns[name].categories[:1000] if "e" in text.lower()]
-        rounded = clock.tick * 10.0 ** min((Decimal(text).as_tuple().exponent for text in texts), default=-99)  # type: ignore[type-var]
+        rounded = clock.tick * 10.0 ** min((int(Decimal(text).as_tuple().exponent) for text in texts), default=-99)
         if rounded > ROUGH * step:
             said = f"{self.file} has times such as {texts[0]}, rounded to {rounded:.1g} s as a spreadsheet stores them"
             if rounded > step / 2:

@@ -24,13 +24,13 @@ def test_poses_through_a_fisheye_are_those_of_its_corners():
     turns = Rotation.from_rotvec(np.outer(time, [0.5, 1.0, 0.2]) + np.array([np.pi, 0, 0]))
     position = places.mean(axis=0) + np.stack([0.1 * time, 0 * time, 0.25 + 0 * time], axis=1)
     seen = np.stack([turns.inv().apply(place - position) for place in places], axis=1)
-    corners = LENS.pixels(seen[..., :2] / seen[..., 2:])
+    corners = LENS.pixels(seen[..., :2] / seen[..., 2:]) + np.random.default_rng(0).normal(0, 0.02, (5, len(places), 2))
     nothing = {"time": time, "corners": corners, "tracked": np.full((2, 2), np.nan)}
     empty = dict.fromkeys(set(Sighting.__dataclass_fields__) - nothing.keys())
     flat = straightened(Sighting(**empty, **nothing), LENS)
     found = find_poses(time, flat.corners, places, LENS.straight)
-    np.testing.assert_allclose(found.poses.position, position, atol=1e-6)
-    assert (found.poses.rotation.inv() * turns).magnitude().max() < 1e-6
+    np.testing.assert_allclose(found.poses.position, position, atol=1e-3)
+    assert (found.poses.rotation.inv() * turns).magnitude().max() < 5e-3
 
 
 def test_pictures_of_a_fisheye_are_straightened():

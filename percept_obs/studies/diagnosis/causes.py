@@ -108,6 +108,10 @@ def _same(A: Array, b: Array) -> tuple[Array, Array]:
     return A, b
 
 
+def _inverted(poses: Array, mount: Mount) -> Array:
+    return np.asarray(np.linalg.inv(poses))
+
+
 def _back(poses: Array, mount: Mount) -> Array:
     """Poses, matrices of shape (T, 4, 4), with their rotations inverted."""
     found = poses.copy()
@@ -194,7 +198,7 @@ _MIX_UPS = {
         f"the motion is in a renderer's frame (x right, y up, z back); {CAMERA}",
         _axes(np.diag([1.0, -1, -1])),
     ),
-    "world": MixUp("poses inverted", f"the poses {OF_WORLD}", poses=lambda poses, _: np.linalg.inv(poses)),
+    "world": MixUp("poses inverted", f"the poses {OF_WORLD}", poses=_inverted),
     "turned back": MixUp("rotations inverted", f"the rotations {OF_WORLD}", poses=_back),
     "w first": MixUp("quaternion order", "quaternions w, x, y, z were read as x, y, z, w", poses=_rolled(-1)),
     "w last": MixUp("quaternion order", "quaternions x, y, z, w were read as w, x, y, z", poses=_rolled(1)),
