@@ -71,6 +71,11 @@ def read_folder(path: PathLike, rate: float | None = None, repeated: Repeated = 
     repeated : "refuse" or "drop"
         As for `read_tum`.
 
+    Returns
+    -------
+    Folder
+        With its `sentence`.
+
     Raises
     ------
     FileNotFoundError

@@ -130,6 +130,11 @@ def read_kitti(path: PathLike, times: PathLike | None = None, rate: float | None
     rate : float, optional
         Poses a second instead; 10 of KITTI's cameras.
 
+    Returns
+    -------
+    Poses
+        Of the left camera, in metres.
+
     Raises
     ------
     FileNotFoundError
