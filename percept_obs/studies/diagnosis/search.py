@@ -217,7 +217,7 @@ def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> 
     """Fit of all numbers, with the mix-up that explains the samples; the first fit has none."""
     first, *others = screened
     told = [] if _explained(first, noise) else [each for each in others if _explained(each, noise)]
-    other = _fewest(_joint(max(told, key=lambda each: each.gain(first)), keys)) if told else None
+    other = _fewest(_joint(_likeliest(told), keys)) if told else None
     if other and not any(each.wrong for each in told):
         return other
     best = _joint(first, keys)
@@ -232,6 +232,13 @@ def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> 
         if _explained(other, noise) or (plain and other.typical < min(best.typical / LIMITS.worse, most)):
             best = min(best, other, key=lambda each: (not _explained(each, noise), each.typical))
     return best
+
+
+def _likeliest(told: Sequence[Fit]) -> Fit:
+    """Fit with the fewest numbers, unless another is clearly likelier: poses' noise is fitted by more of them."""
+    simplest = min(told, key=lambda each: (each.unknowns, each.typical))
+    best = max(told, key=lambda each: each.gain(simplest))
+    return best if best.gain(simplest) > LIMITS.clearly else simplest
 
 
 def _joint(bare: Fit, keys: Sequence[str]) -> Fit:
