@@ -89,7 +89,8 @@ def spoiled(poses, pixels, fault, draw):
     elif fault == "mount left out":
         poses = body
     elif fault == "time offset":
-        poses = Poses(poses.time + draw.choice([-0.1, 0.1]), poses.position, quaternions)
+        late = round(0.1 * RATE)  # images have the poses' times
+        poses, pixels = Poses(poses.time[:-late], poses.position[late:], quaternions[late:]), pixels[:-late]
     elif fault == "flipped axis":
         pixels = [0, 480] + pixels * [1, -1]
     elif fault == "frames swapped":
