@@ -29,8 +29,9 @@ from percept_obs.observers import (
 )
 from percept_obs.points import FirstSight, PointsForm, PointsScenario, luenberger
 from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform, record, scenarios, seen_on
+from percept_obs.recording.folders import read_folder
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.recording.pose_files import read_euroc, read_tum
+from percept_obs.recording.pose_files import read_euroc, read_kitti, read_tum
 from percept_obs.recording.poses import Poses, rigid_from_poses
 from percept_obs.recording.text_table import Clock
 from percept_obs.structure import StructureAndMotion
@@ -114,6 +115,8 @@ __all__ = [
     "pinhole",
     "plane",
     "read_euroc",
+    "read_folder",
+    "read_kitti",
     "read_tum",
     "record",
     "rigid",

@@ -23,10 +23,10 @@ def undistorted(sighting: Sighting, camera: PixelCamera) -> Frames:
     matrix = np.array([[focal[0], 0, centre[0]], [0, focal[1], centre[1]], [0, 0, 1]])
     (left, upper), (right, lower) = (-0.5 - centre) / focal, (np.array([width, height]) - 0.5 - centre) / focal
     files = sighting.small
-    if any(camera.distortion):
-        maps = cv2.initUndistortRectifyMap(
-            matrix, np.array(camera.distortion), None, matrix, (width, height), cv2.CV_16SC2
-        )
+    if camera.bends:
+        lens: Any = np.array(camera.distortion or np.zeros(4))
+        rectify = cv2.fisheye.initUndistortRectifyMap if camera.lens == "equidistant" else cv2.initUndistortRectifyMap
+        maps = rectify(matrix, lens, np.eye(3), matrix, (width, height), cv2.CV_16SC2)
         read = (cv2.imdecode(np.frombuffer(file, np.uint8), cv2.IMREAD_UNCHANGED) for file in files)
         straight = (cv2.remap(picture, *maps, cv2.INTER_LINEAR) for picture in read)
         files = tuple(cv2.imencode(".jpg", each, [cv2.IMWRITE_JPEG_QUALITY, 80])[1].tobytes() for each in straight)

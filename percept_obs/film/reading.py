@@ -103,7 +103,10 @@ def read_film(
     if poses is not None and camera is None:
         raise ValueError("poses are given and no camera; give also camera=PixelCamera(...), in pixels of the film")
     printed = board if isinstance(board, Board) else Board() if board is None else Board.from_json(board)
-    sighting = sight(video, printed)
+    sighting = raw = sight(video, printed)
+    fisheye = camera if camera is not None and camera.lens == "equidistant" else None
+    if fisheye:  # what finds poses and faults knows the other lens
+        sighting, camera = straightened(sighting, fisheye), fisheye.straight
     seen, faults, unsure = None, None, 0.0
     if poses is None:
         _refuse_unseen(sighting, printed, video)
@@ -127,6 +130,8 @@ def read_film(
             f"'{video.path}' shows no point for {TRACKS.shortest:g} s while the camera's pose is known; move slowly, "
             "with the board in the picture"
         )
+    if fisheye:
+        sighting, camera = raw, fisheye
     return Film(
         tuple(replace(each, doubt=doubt, noise_variance=_noise(each, seen)) for each in found),
         (BOARD, TRIANGULATION),
@@ -141,6 +146,14 @@ def read_film(
         printed,
         seen,
     )
+
+
+def straightened(sighting: Sighting, camera: PixelCamera) -> Sighting:
+    """Return a sighting with the pixels of a camera's rectified images."""
+    corners, tracked = (
+        camera.straight.pixels(camera.directions(pixels)) for pixels in (sighting.corners, sighting.tracked)
+    )
+    return replace(sighting, corners=corners, tracked=tracked)
 
 
 def _noise(recording: Recording, seen: Seen | None) -> float:

@@ -1,11 +1,11 @@
-"""Files of cameras in YAML: those of OpenCV and ROS, Kalibr's camchains, and EuRoC's sensors."""
+"""Files of cameras in YAML: those of OpenCV, ROS and VINS, Kalibr's camchains, and EuRoC's sensors."""
 
 from __future__ import annotations
 
 import os
 import reprlib
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,18 +13,33 @@ from percept_obs.compile import Array
 from percept_obs.recording.text_table import PathLike
 from percept_obs.validation import checked, needed
 
-__all__ = ["read_mount"]
+__all__ = ["Mount", "read_mount"]
 
 LARGEST = 1_000_000
 """Bytes in the largest file of a camera; others have a few thousand."""
 
-LENSES = ("", "none", "radtan", "radial-tangential", "plumb_bob", "rational_polynomial")
-"""Names of lenses in OpenCV's model, in the files that name it."""
+LENSES = ("", "none", "radtan", "radial-tangential", "plumb_bob", "rational_polynomial", "equidistant", "fisheye")
+"""Names of lenses in the files that name them; the last two are fisheyes."""
+
+
+class Mount(NamedTuple):
+    """Where a camera sits on its body: p in metres, shape (3,), R, shape (3, 3), and the shift of their clocks.
+
+    The body's clock is ahead of the camera's by `shift` seconds, Kalibr's timeshift_cam_imu.
+    """
+
+    position: Array
+    orientation: Array
+    shift: float = 0.0
 
 
 def fields_of_camera(path: PathLike, camera: str | None) -> dict[str, Any]:
     """Fields of the `PixelCamera` in a file; see `PixelCamera.from_yaml`."""
     file, found = _camera(path, camera)
+    numbers = found.get("projection_parameters")
+    if isinstance(numbers, dict) and {"fx", "fy", "cx", "cy"} <= numbers.keys():  # of VINS
+        found["intrinsics"] = [numbers[key] for key in ("fx", "fy", "cx", "cy")]
+        found["distortion_coeffs"] = [*(found.get("distortion_parameters") or {}).values()]
     lens = str(found.get("distortion_model") or "").lower()
     if found.get("camera_model", "pinhole") != "pinhole" or lens not in LENSES:
         raise ValueError(
@@ -49,12 +64,13 @@ def fields_of_camera(path: PathLike, camera: str | None) -> dict[str, Any]:
         distortion.pop()
     size = found.get("resolution") or [found.get(f"image_{side}") for side in ("width", "height")]
     size = None if None in size else size
-    return {"focal": (fx, fy), "centre": (cx, cy), "size": size, "distortion": distortion}
+    kind = "equidistant" if lens in LENSES[-2:] else "radtan"
+    return {"focal": (fx, fy), "centre": (cx, cy), "size": size, "distortion": distortion, "lens": kind}
 
 
 @checked
-def read_mount(path: PathLike, camera: str | None = None) -> tuple[Array, Array]:
-    """Return where a camera sits on its body, for `Poses.mounted`: p in metres, shape (3,), and R, shape (3, 3).
+def read_mount(path: PathLike, camera: str | None = None) -> Mount:
+    """Return where a camera sits on its body, and its clock, for ``poses.mounted(*read_mount(file))``.
 
     Parameters
     ----------
@@ -91,7 +107,8 @@ def read_mount(path: PathLike, camera: str | None = None) -> tuple[Array, Array]
             turned = np.allclose(turn @ turn.T, np.eye(3), atol=1e-3) and np.linalg.det(turn) > 0
             if not turned or (mount[3] != (0, 0, 0, 1)).any():
                 raise ValueError(f"{file} has {key} = {mount.tolist()}; expected a rotation beside p, above 0 0 0 1")
-            return (-turn.T @ place, turn.T) if backwards else (place, turn)
+            shift = float(_numbers(file, {"shift": [found.get("timeshift_cam_imu", 0.0)]}, "shift", 1)[0])
+            return Mount(-turn.T @ place, turn.T, shift) if backwards else Mount(place, turn, shift)
     raise ValueError(f"{file} has {', '.join(found)}; it needs T_BS, T_imu_cam or T_cam_imu for a mount")
 
 

@@ -1,10 +1,11 @@
-"""Models of COLMAP as text: cameras.txt, images.txt and points3D.txt become a camera's poses and tracks of points."""
+"""Models of COLMAP, binary or text: its cameras, images and points become a camera's poses and tracks of points."""
 
 from __future__ import annotations
 
 import math
 import os
 import re
+import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,13 +16,16 @@ import numpy as np
 
 from percept_obs.compile import Array, Indices
 from percept_obs.recording import Recording
-from percept_obs.recording.pixels import PixelCamera
+from percept_obs.recording.pixels import Lens, PixelCamera
 from percept_obs.recording.poses import Poses
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
 from percept_obs.recording.track_table import refuse_parts, tracks_of_points
 from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked, load_pandas, positive
 
+FISHEYES = ("OPENCV_FISHEYE", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE")
+OWN_LENS = ("FOV", "THIN_PRISM_FISHEYE")
+"""Models with a lens that no `PixelCamera` has."""
 MODELS = MappingProxyType(
     {
         "SIMPLE_PINHOLE": (0, 0, 1, 2),
@@ -29,10 +33,15 @@ MODELS = MappingProxyType(
         "SIMPLE_RADIAL": (0, 0, 1, 2, 3),
         "RADIAL": (0, 0, 1, 2, 3, 4),
         "OPENCV": tuple(range(8)),
+        "OPENCV_FISHEYE": tuple(range(8)),
         "FULL_OPENCV": tuple(range(12)),
+        "FOV": tuple(range(5)),
+        "SIMPLE_RADIAL_FISHEYE": (0, 0, 1, 2, 3),
+        "RADIAL_FISHEYE": (0, 0, 1, 2, 3, 4),
+        "THIN_PRISM_FISHEYE": tuple(range(12)),
     }
 )
-"""Places of fx, fy, cx, cy and the lens among the parameters of COLMAP's models of a pinhole."""
+"""Places of fx, fy, cx, cy and the lens among the parameters of COLMAP's models, in the order of their numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,14 +108,14 @@ class ColmapModel:
 
 @checked
 def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECONDS) -> ColmapModel:
-    """Return the model in a folder of COLMAP's text files.
+    """Return the model in a folder of COLMAP.
 
     The scale of such a model is arbitrary, and with it every distance.
 
     Parameters
     ----------
     folder : path
-        With cameras.txt, images.txt and points3D.txt, as ``colmap model_converter --output_type TXT`` writes them.
+        With cameras.bin, images.bin and points3D.bin, or the same as .txt.
     rate : float, optional
         Images a second; the last number in an image's name counts them, or else their order.
     clock : Clock
@@ -117,7 +126,7 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
     FileNotFoundError
         If a file is missing.
     ValueError
-        If a row is none of COLMAP, there are several cameras or one that is no pinhole, or names give no times.
+        If a file is none of COLMAP, there are several cameras or one of another model, or names give no times.
 
     See Also
     --------
@@ -135,29 +144,28 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
     if rate is not None:
         positive(rate=rate)
     place = Path(folder)
-    cameras, images, points = (place / name for name in ("cameras.txt", "images.txt", "points3D.txt"))
     try:
-        lenses = {row[0]: row[1:] for row in _rows(cameras)}
-        lines = [*_rows(images, blank=True)]
-        heads, bodies = lines[::2], [np.array(row, dtype=float).reshape(-1, 3) for row in lines[1::2]]
-        names = [" ".join(head[9:]) for head in heads]
+        lenses, heads, bodies, world = (_binary if (place / "cameras.bin").is_file() else _text)(place)
+        names = [head[9] for head in heads]
         numbers = np.array([head[1:8] for head in heads], dtype=float).reshape(len(heads), 7)
         used = {head[8] for head in heads}
-        world = {int(row[0]): [float(cell) for cell in row[1:4]] for row in _rows(points)}
         if len(bodies) != len(heads) or not all(names) or len(heads) < 2:
             raise ValueError(f"{len(heads)} images, with {len(bodies)} rows of points; expected two images, and names")
         if len(used) > 1:
             raise ValueError(
-                f"{len(used)} cameras, {', '.join(sorted(used))}; a recording is of one: make it with a single one"
+                f"{len(used)} cameras, {', '.join(sorted(used)[:5])}; a recording is of one: make it with a single one"
             )
         (model, width, height, *parameters) = lenses[min(used)]
-        if model not in MODELS:
-            raise ValueError(f"a camera of the model {model}, none of {', '.join(MODELS)}: undistort the images")
+        if model not in MODELS or model in OWN_LENS:
+            told = ", ".join(name for name in MODELS if name not in OWN_LENS)
+            raise ValueError(f"a camera of the model {model}, none of {told}: undistort the images")
         time = _times(names, rate, clock)
         fx, fy, cx, cy, *lens = (float(parameters[k]) for k in MODELS[model])
-        camera = PixelCamera((fx, fy), (cx, cy), (int(width), int(height)), [*lens, *[0.0] * (-len(lens) % 4)])
-    except (ValueError, KeyError, IndexError) as error:
-        raise ValueError(f"{os.fspath(folder)} is no text model of COLMAP with one camera: it has {error}") from None
+        lens = [*lens, *[0.0] * (-len(lens) % 4)]
+        kind: Lens = "equidistant" if model in FISHEYES else "radtan"
+        camera = PixelCamera((fx, fy), (cx, cy), (int(width), int(height)), lens, kind)
+    except (ValueError, KeyError, IndexError, struct.error) as error:
+        raise ValueError(f"{os.fspath(folder)} is no model of COLMAP with one camera: it has {error}") from None
     order = np.argsort(time)
     turn = Poses(time[order], numbers[order, 4:], numbers[order][:, [1, 2, 3, 0]]).rotation.inv()
     poses = Poses(time[order], -turn.apply(numbers[order, 4:]), turn.as_quat())
@@ -172,6 +180,56 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
     if not seen:
         raise ValueError(f"{os.fspath(folder)} has no point that an image sees")
     return ColmapModel(poses, camera, np.array([*world.values()]), np.array(seen), np.array(pixels), tuple(world))
+
+
+Parts = tuple[dict[str, list[Any]], list[list[Any]], list[Array], dict[int, list[float]]]
+"""Cameras by number, a head and the observations (u, v, point) of each image, and points by number."""
+
+
+def _text(place: Path) -> Parts:
+    """Parts of a model in text files."""
+    cameras, images, points = (place / name for name in ("cameras.txt", "images.txt", "points3D.txt"))
+    lenses = {row[0]: row[1:] for row in _rows(cameras)}
+    lines = [*_rows(images, blank=True)]
+    heads = [[*head[:9], " ".join(head[9:])] for head in lines[::2]]
+    bodies = [np.array(row, dtype=float).reshape(-1, 3) for row in lines[1::2]]
+    return lenses, heads, bodies, {int(row[0]): [float(cell) for cell in row[1:4]] for row in _rows(points)}
+
+
+def _binary(place: Path) -> Parts:
+    """Parts of a model in binary files, which are little-endian and packed."""
+    lenses: dict[str, list[Any]] = {}
+    heads, bodies, world = [], [], {}
+    data, (count,), at = _packed(place / "cameras.bin")
+    for _ in range(count):
+        number, model, *size = struct.unpack_from("<iiQQ", data, at)
+        name, places = [*MODELS.items()][model]
+        many = places[-1] + 1
+        lenses[str(number)] = [name, *size, *struct.unpack_from(f"<{many}d", data, at + 24)]
+        at += 24 + 8 * many
+    data, (count,), at = _packed(place / "images.bin")
+    for _ in range(count):
+        *head, camera = struct.unpack_from("<i7di", data, at)
+        end = data.index(b"\0", at + 64)
+        heads.append([*head, str(camera), data[at + 64 : end].decode("utf-8", "replace")])
+        (many,) = struct.unpack_from("<Q", data, end + 1)
+        seen = np.frombuffer(data, [("pixel", "<2f8"), ("point", "<i8")], many, end + 9)
+        bodies.append(np.column_stack([seen["pixel"], seen["point"].astype(float)]))
+        at = end + 9 + 24 * many
+    data, (count,), at = _packed(place / "points3D.bin")
+    for _ in range(count):
+        number, *there, many = struct.unpack_from("<Q3d11xQ", data, at)
+        world[number] = there
+        at += 51 + 8 * many
+    return lenses, heads, bodies, world
+
+
+def _packed(file: Path) -> tuple[bytes, tuple[int], int]:
+    """Content of a binary file, the number of things in it, and where the first begins."""
+    if not file.is_file():
+        raise FileNotFoundError(f"there is no {file}; name a folder with cameras.bin, images.bin and points3D.bin")
+    data = file.read_bytes()
+    return data, struct.unpack_from("<Q", data), 8
 
 
 def _rows(file: Path, blank: bool = False) -> Iterator[list[str]]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.recording.camera import Seed, seeded
-from percept_obs.recording.text_table import NANOSECONDS, Clock, PathLike, read_table
+from percept_obs.recording.text_table import NANOSECONDS, Clock, PathLike, Repeated, read_table
 from percept_obs.system.inertial import imu
 from percept_obs.system.motion import Motion
 from percept_obs.validation import checked, positive
@@ -77,7 +77,7 @@ class Imu:
 
 
 @checked
-def read_imu(path: PathLike, clock: Clock = NANOSECONDS) -> Motion:
+def read_imu(path: PathLike, clock: Clock = NANOSECONDS, repeated: Repeated = "refuse") -> Motion:
     r"""Return the samples of an IMU in a file of EuRoC or TUM VI, ``imu0/data.csv``, in the IMU's axes.
 
     Parameters
@@ -86,13 +86,16 @@ def read_imu(path: PathLike, clock: Clock = NANOSECONDS) -> Motion:
         Rows of nanoseconds, angular velocity x, y, z in rad/s and specific force x, y, z in m/s^2, separated by commas.
     clock : Clock
         Of the file, as for `read_euroc`.
+    repeated : "refuse" or "drop"
+        As for `read_euroc`.
 
     Raises
     ------
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it has too few columns, a cell is not a finite number, or times do not increase.
+        If it is another kind of file, has too few columns, a cell is not a finite number, times do not increase or
+        cannot be, or a spreadsheet has rounded them until steps are lost.
 
     See Also
     --------
@@ -107,9 +110,10 @@ def read_imu(path: PathLike, clock: Clock = NANOSECONDS) -> Motion:
     ...     read_imu(file).known(0.005).tolist()
     [[0.0, 0.0, 0.1, 0.0, -9.8, 0.0]]
     """
-    table = read_table(path, NAMES, ",", EXAMPLE)
+    table = read_table(path, NAMES, ",", EXAMPLE, kind="IMU")
     columns = np.stack([table.numbers(name, gaps=False) for name in NAMES[1:]], axis=-1)
+    time, kept = table.steps(NAMES[0], clock, repeated)
     try:
-        return imu(columns[:, :3], columns[:, 3:], table.seconds(NAMES[0], clock))
+        return imu(columns[kept, :3], columns[kept, 3:], time)
     except ValueError as error:
         raise ValueError(f"{table.file}: {error}") from None

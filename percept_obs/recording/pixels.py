@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 import sympy as sp
@@ -22,6 +22,11 @@ LENS = sp.symbols("k1 k2 p1 p2 k3 k4 k5 k6", real=True)
 
 LENS_COUNTS = (0, 4, 5, 8)
 """Numbers of coefficients in OpenCV's files."""
+
+Lens = Literal["radtan", "equidistant"]
+
+ASIDE = 1.55
+"""Radians from the optical axis beyond which an image has no place on a plane, nearly a right angle."""
 
 MOST_TRIALS = 50
 """Most steps of Newton's method; about five are needed where the lens maps one to one."""
@@ -42,12 +47,16 @@ class PixelCamera:
         Width and height of the image in pixels; an image without borders when left out.
     distortion : sequence of floats, optional
         Numbers k1, k2, p1, p2, then k3, then k4, k5, k6 of OpenCV's model, as its calibration gives them: four, five,
-        eight, or none for images that are rectified.
+        eight, or none for images that are rectified.  Of an equidistant lens four, k1 to k4, or none.
+    lens : "radtan" or "equidistant"
+        Radial and tangential distortion of a pinhole, or a fisheye (Kannala and Brandt, ``cv2.fisheye``), where the
+        angle a from the axis is seen at a (1 + k1 a^2 + k2 a^4 + k3 a^6 + k4 a^8).
 
     Raises
     ------
     ValueError
-        If a number is not finite, a focal length or a size is not positive, or their number is wrong.
+        If a number is not finite, a focal length or a size is not positive, their number is wrong, or the lens is none
+        of the two.
 
     See Also
     --------
@@ -55,8 +64,9 @@ class PixelCamera:
 
     Notes
     -----
-    The model is that of the OpenCV documentation, "Camera Calibration and 3D Reconstruction", without thin prisms,
-    tilted sensors and fisheyes.
+    The model is that of the OpenCV documentation, "Camera Calibration and 3D Reconstruction", without thin prisms
+    and tilted sensors.  J. Kannala and S. S. Brandt, A generic camera model and calibration method for conventional,
+    wide-angle, and fish-eye lenses, IEEE Transactions on Pattern Analysis and Machine Intelligence 28(8), 2006.
 
     Examples
     --------
@@ -65,12 +75,15 @@ class PixelCamera:
     [552.812, 240.0]
     >>> lens.image([552.8125, 240.0]).round(9).tolist()
     [0.5, 0.0]
+    >>> PixelCamera((500, 500), (320, 240), lens="equidistant").pixels([1.0, 0.0]).round(3).tolist()
+    [712.699, 240.0]
     """
 
     focal: Sequence[float]
     centre: Sequence[float] = (0.0, 0.0)
     size: Sequence[int] | None = None
     distortion: Sequence[float] = ()
+    lens: Lens = "radtan"
 
     def __post_init__(self) -> None:
         for name, least, kind in (("focal", 0, "positive"), ("centre", -math.inf, "finite"), ("size", 0, "positive")):
@@ -80,11 +93,14 @@ class PixelCamera:
             if values.shape != (2,) or not ((values > least) & np.isfinite(values)).all():
                 raise ValueError(f"{name} is {getattr(self, name)!r}; it must be two {kind} numbers of pixels")
             vars(self)[name] = tuple(map(int, values) if name == "size" else values.tolist())
+        if self.lens not in get_args(Lens):
+            raise ValueError(f"the lens is {self.lens!r}, none of {', '.join(get_args(Lens))}")
         lens = np.asarray(self.distortion, dtype=float)
-        if lens.size not in LENS_COUNTS or not np.isfinite(lens).all():
+        counts = LENS_COUNTS[:2] if self.lens == "equidistant" else LENS_COUNTS
+        if lens.size not in counts or not np.isfinite(lens).all():
             raise ValueError(
-                f"the distortion is {self.distortion!r}; it must be {', '.join(map(str, LENS_COUNTS[1:]))} finite "
-                f"numbers, {', '.join(map(str, LENS))}, or none"
+                f"the distortion is {self.distortion!r}; it must be {', '.join(map(str, counts[1:]))} finite "
+                f"numbers, {self._coefficients}, or none"
             )
         vars(self)["distortion"] = tuple(lens.tolist())
 
@@ -103,7 +119,7 @@ class PixelCamera:
         FileNotFoundError
             If there is no such file.
         ValueError
-            If it is no such file, or the camera is no pinhole with a lens of OpenCV's model, such as a fisheye.
+            If it is no such file, or the lens of the camera is none that `PixelCamera` has.
 
         See Also
         --------
@@ -125,10 +141,28 @@ class PixelCamera:
         """Intrinsic matrix A_c, shape (3, 3)."""
         return np.array([[self.focal[0], 0, self.centre[0]], [0, self.focal[1], self.centre[1]], [0, 0, 1.0]])
 
+    @property
+    def bends(self) -> bool:
+        """True if pixels are no multiples of image coordinates."""
+        return any(self.distortion) or self.lens == "equidistant"
+
+    @property
+    def straight(self) -> PixelCamera:
+        """The camera with rectified images."""
+        return replace(self, distortion=(), lens="radtan")
+
+    @property
+    def _coefficients(self) -> str:
+        """Names of the distortion's numbers."""
+        return "k1, k2, k3, k4" if self.lens == "equidistant" else ", ".join(map(str, LENS))
+
     def pixels(self, image: ArrayLike) -> Array:
         """Return the pixels of image coordinates (y1, y2), shape (..., 2)."""
         image = numbers(image, "the image coordinates", 2)
-        if any(self.distortion):
+        if self.lens == "equidistant":
+            radius = np.maximum(np.linalg.norm(image, axis=-1)[..., None], np.finfo(float).tiny)
+            image = np.asarray(image * self._seen_at(np.arctan(radius))[0] / radius)
+        elif any(self.distortion):
             image = np.stack(self._distorted_from_undistorted()(*np.moveaxis(image, -1, 0))[:2], axis=-1)
         return image * self.focal + self.centre
 
@@ -145,13 +179,15 @@ class PixelCamera:
             raise ValueError(
                 f"no direction is seen at the pixel ({pixel[0]:.6g}, {pixel[1]:.6g}) through a lens with the "
                 f"distortion {self.distortion}; are these the coefficients of this camera, in the order "
-                f"{', '.join(map(str, LENS))}?"
+                f"{self._coefficients}?"
             )
         return image
 
     def directions(self, pixels: ArrayLike) -> Array:
         """Return what `image` does, with NaN where the lens maps no direction to a pixel."""
         distorted = (numbers(pixels, "the pixels", 2) - self.centre) / self.focal
+        if self.lens == "equidistant":
+            return self._image_of_angles(distorted)
         return self._undistorted_from_distorted(distorted) if any(self.distortion) else distorted
 
     def variance(self, sigma: float) -> float:
@@ -167,6 +203,27 @@ class PixelCamera:
         if self.size is None:
             return np.ones(pixels.shape[:-1], dtype=bool)
         return np.all((pixels >= 0) & (pixels <= self.size), axis=-1)
+
+    def _seen_at(self, angle: Array) -> tuple[Array, Array]:
+        """Radii over the focal length at which an equidistant lens shows angles, and their derivatives."""
+        powers = np.array([1.0, *(self.distortion or np.zeros(4))])
+        odd = 2 * np.arange(5) + 1
+        return (angle[..., None] ** odd) @ powers, (angle[..., None] ** (odd - 1)) @ (odd * powers)
+
+    def _image_of_angles(self, distorted: Array) -> Array:
+        """Image coordinates behind an equidistant lens, by Newton's method; NaN where no direction ahead is seen."""
+        radius: Array = np.asarray(np.linalg.norm(distorted, axis=-1))[..., None]
+        angle = np.minimum(radius, ASIDE)
+        with np.errstate(all="ignore"):
+            for _ in range(MOST_TRIALS):
+                shown, slope = self._seen_at(angle)
+                angle = angle - (shown - radius) / slope
+                if not (np.abs(shown - radius) > 1e-15).any():
+                    break
+            shown, slope = self._seen_at(angle)
+            ahead = (np.abs(shown - radius) < 1e-9) & (slope > 0) & (angle >= 0) & (angle < ASIDE)
+            scale = np.where(radius > 0, np.tan(angle) / radius, 1.0)
+        return np.where(ahead, distorted * scale, np.nan)
 
     def _distorted_from_undistorted(self) -> Callable[..., list[Array]]:
         """Return the function from undistorted coordinates to distorted ones and their derivatives."""

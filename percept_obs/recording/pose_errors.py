@@ -35,6 +35,8 @@ class PoseErrors:
         Variances of the smoothed positions' coordinates in m^2 and of the smoothed rotations' angles in rad^2.
     shift_memory, turn_memory : float
         Seconds over which the smoother averages; three times as long its errors stay alike.
+    mount : pair of arrays, optional
+        Place and rotation of the camera on the body whose poses were given.
 
     See Also
     --------
@@ -56,6 +58,7 @@ class PoseErrors:
     shift_memory: float
     turn: float
     turn_memory: float
+    mount: tuple[Array, Array] | None = None
 
     def image_variance(self, depth: float, interval: float) -> float:
         """Return the variance of white noise of the image that is as bad for an observer as the errors of the poses.

@@ -52,6 +52,8 @@ class Poses:
         larger ones are found from the poses.
     correlated : float
         Seconds over which these errors stay alike, as those of poses that a filter has smoothed; 0 for white noise.
+    mount : pair of arrays, optional
+        Place and rotation of the camera on its body, if `mounted` has made the poses.
 
     Raises
     ------
@@ -79,6 +81,7 @@ class Poses:
     orientation: Array
     sigma: tuple[float, float] = (0.0, 0.0)
     correlated: float = 0.0
+    mount: tuple[Array, Array] | None = None
 
     def __post_init__(self) -> None:
         time, position, turns = (
@@ -117,8 +120,8 @@ class Poses:
 
         return Rotation.from_quat(self.orientation)
 
-    def mounted(self, position: ArrayLike, orientation: ArrayLike) -> Poses:
-        """Return the poses of a camera fixed to this body: X_body = R X_camera + p.
+    def mounted(self, position: ArrayLike, orientation: ArrayLike, shift: float = 0.0) -> Poses:
+        """Return the poses of a camera fixed to this body, by the camera's clock: X_body = R X_camera + p.
 
         Parameters
         ----------
@@ -126,6 +129,8 @@ class Poses:
             Of the camera in the body's frame, in metres.
         orientation : array of shape (4,) or (3, 3)
             Of the camera in the body's frame, as in `Poses`.
+        shift : float
+            Seconds by which the body's clock is ahead of the camera's, Kalibr's timeshift_cam_imu.
 
         Examples
         --------
@@ -137,8 +142,15 @@ class Poses:
         [1.0, 0.0, 0.2]
         """
         mount = Poses(np.arange(2.0), np.tile(position, (2, 1)), np.stack([orientation, orientation]))
-        places = self.position + self.rotation.apply(mount.position[:1].copy())
-        return replace(self, position=places, orientation=(self.rotation * mount.rotation[0]).as_quat())
+        (shift,) = numbers([shift], "the shift of the clocks", 1)
+        place, turn = mount.position[0], mount.rotation[0]
+        return replace(
+            self,
+            time=self.time - shift,
+            position=self.position + self.rotation.apply(place.copy()),
+            orientation=(self.rotation * turn).as_quat(),
+            mount=(place, turn.as_matrix()),
+        )
 
     def path(self) -> CameraPath:
         """Return smoothed poses with their velocities, at the times of the poses and at least 120 times a second.
@@ -175,7 +187,7 @@ class Poses:
         placed = smooth(time, position, floors[0])
         turned, turning = smooth_turns(time, rotation, floors[1])
         raw = (self.time, self.position, readonly(self.rotation.as_matrix()))
-        errors = PoseErrors(*raw, placed.error, placed.memory, turning.error, turning.memory)
+        errors = PoseErrors(*raw, placed.error, placed.memory, turning.error, turning.memory, self.mount)
         return _densely(time, placed, turned, turning, errors)
 
     @cached_property

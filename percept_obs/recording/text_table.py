@@ -12,17 +12,33 @@ from decimal import Decimal, InvalidOperation
 from io import StringIO
 from numbers import Integral
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, Literal, get_args
 
 import numpy as np
 
-from percept_obs.compile import Array
-from percept_obs.validation import checked, load_pandas
+from percept_obs.compile import Array, Flags
+from percept_obs.recording.first_lines import refuse_others
+from percept_obs.recording.plausibility import Unlikely
+from percept_obs.validation import checked, load_pandas, warn
 
 PathLike = str | os.PathLike[str]
 
 LARGEST_POWER = 300
 """Largest power of ten of a clock's reading, near that of a float."""
+
+SHORTEST_STEP, USUAL_STEP, LONGEST_STEP = 1e-5, 0.03, 20.0
+"""Seconds between two rows of a trajectory or an IMU: what is shorter or longer was counted in another unit."""
+
+LATEST = 1e11
+"""Seconds that no clock shows, 3,000 years."""
+
+ROUGH = 1e-3
+"""Share of a step by which times may be rounded: a filter's speeds have larger errors."""
+
+TICKS = MappingProxyType({"seconds": 1.0, "milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9})
+
+Repeated = Literal["refuse", "drop"]
 
 
 @checked
@@ -124,6 +140,39 @@ class TextTable:
         except ValueError as error:
             raise ValueError(f"{self.file}, column {name!r}: {error}") from None
 
+    def steps(self, name: str, clock: Clock, repeated: Repeated) -> tuple[Array, Flags]:
+        """Return times in seconds that can be those of a trajectory, and which rows they are of, shape (K,).
+
+        Rows with the time of the one before are refused or dropped, with their number.
+        """
+        if repeated not in get_args(Repeated):
+            raise ValueError(f"repeated is {repeated!r}; it must be 'refuse', or 'drop' to leave such rows out")
+        time = self.seconds(name, clock)
+        again = np.append(False, np.diff(time) == 0)
+        kept = time[~again]
+        step = float(np.median(np.abs(np.diff(kept)))) if len(kept) > 1 else USUAL_STEP
+        texts = [text for text in self.columns[name].categories[:1000] if "e" in text.lower()]
+        rounded = clock.tick * 10.0 ** min((int(Decimal(text).as_tuple().exponent) for text in texts), default=-99)
+        if rounded > ROUGH * step:
+            said = f"{self.file} has times such as {texts[0]}, rounded to {rounded:.1g} s as a spreadsheet stores them"
+            if rounded > step / 2:
+                raise ValueError(
+                    f"{said}: the steps between its rows are lost; export it again, with the times as text"
+                )
+            warn(Unlikely(f"{said}: the steps of {step:.3g} s between its rows are wrong by as much"))
+        if again.any():
+            said = f"{again.sum()} of {len(time)} rows of {self.file} have the time of the row before"
+            if repeated == "refuse":
+                raise ValueError(f'{said}, the first is row {again.argmax() + 1}; repeated="drop" leaves them out')
+            warn(Unlikely(f"{said}, and are left out"))
+        if not SHORTEST_STEP <= step <= LONGEST_STEP or np.abs(kept).max() > LATEST:
+            unit = min(TICKS, key=lambda unit: abs(math.log(step / clock.tick * TICKS[unit] / USUAL_STEP)))
+            raise ValueError(
+                f"{self.file} has times up to {kept[-1]:.4g} s, with {step:.3g} s from row to row, which cannot be; if "
+                f"they are {unit}, give clock=Clock(tick={TICKS[unit]:g})"
+            )
+        return kept, ~again
+
 
 def read_table(
     path: PathLike,
@@ -131,16 +180,19 @@ def read_table(
     separator: str = ",",
     example: str = "",
     numbers: Sequence[str] = (),
+    kind: str = "",
 ) -> TextTable:
     """Read a table of text; a line that begins with # is a comment.
 
     Names are those of the columns of a file without a header, which may have further ones; the separator is a regular
-    expression, and the example a first line for messages.  The columns that are to be numbers are read fast.
+    expression, and the example a first line for messages.  The columns that are to be numbers are read fast.  A file
+    whose first lines are those of another kind is refused.
     """
     pd = load_pandas()
     file = os.fspath(path)
     if not Path(path).is_file():
         raise FileNotFoundError(f"the path names '{file}', where there is no file; name a text file with a table")
+    refuse_others(path, kind)
     layout: dict[str, Any] = {"sep": separator, "skipinitialspace": True, "keep_default_na": False, "header": None}
     header: list[str] = []
     try:

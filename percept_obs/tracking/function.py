@@ -129,11 +129,11 @@ def _follow_by_function(
     claims = None if observer.covariance is None else np.full((len(recording.time), n, n), np.nan)
 
     def asked(part: str, shape: tuple[int, ...] | None, *arguments: Any) -> Array:
-        """Return the result of one of the observer's functions; NaN if it divides by zero or a matrix is singular."""
+        """Return the result of one of the observer's functions; NaN if a number is too large or a matrix singular."""
         try:
             with np.errstate(all="ignore"):
                 found = np.asarray(getattr(observer, part)(*arguments), dtype=float)
-        except (ArithmeticError, np.linalg.LinAlgError):
+        except (OverflowError, np.linalg.LinAlgError):
             return np.full(shape or (1,), np.nan)
         except Exception as error:
             said = f"{type(error).__name__}: {error}"

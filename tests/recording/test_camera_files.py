@@ -1,10 +1,12 @@
 """A camera is read from the files that calibration programs write, and a model of COLMAP becomes recordings."""
 
+import struct
+
 import numpy as np
 import pytest
 from camera_paths import PLACES, carried, poses, seen
 
-from percept_obs import Clock, PerspectiveSystem, PixelCamera, ekf, record, scenarios, track
+from percept_obs import Clock, PerspectiveSystem, PixelCamera, ekf, read_folder, record, scenarios, track
 from percept_obs.recording.camera_files import read_mount
 from percept_obs.recording.colmap import read_colmap
 from percept_obs.recording.pose_files import read_tum
@@ -60,11 +62,28 @@ KALIBR = """cam0:
   distortion_model: radtan
   intrinsics: [458.5, 457.25, 367.5, 248.0]
   resolution: [752, 480]
+  timeshift_cam_imu: 0.25
 cam1:
   camera_model: pinhole
   distortion_coeffs: [0, 0, 0, 0]
   distortion_model: equidistant
   intrinsics: [1, 1, 0, 0]
+"""
+VINS = """%YAML:1.0
+---
+model_type: PINHOLE
+image_width: 752
+image_height: 480
+distortion_parameters:
+   k1: -0.28
+   k2: 0.07
+   p1: 1.0e-05
+   p2: -2.0e-05
+projection_parameters:
+   fx: 458.5
+   fy: 457.25
+   cx: 367.5
+   cy: 248.0
 """
 
 
@@ -73,7 +92,7 @@ def written(folder, text):
     return folder / "camera.yaml"
 
 
-@pytest.mark.parametrize("text", [ROS, OPENCV, EUROC, KALIBR], ids=["ROS", "OpenCV", "EuRoC", "Kalibr"])
+@pytest.mark.parametrize("text", [ROS, OPENCV, EUROC, KALIBR, VINS], ids=["ROS", "OpenCV", "EuRoC", "Kalibr", "VINS"])
 def test_a_camera_is_read_from_the_files_of_calibration(tmp_path, text):
     camera = PixelCamera.from_yaml(written(tmp_path, text), "cam0" if "cam0" in text else None)
     assert (camera.focal, camera.centre, camera.size) == (EXPECTED.focal, EXPECTED.centre, EXPECTED.size)
@@ -81,12 +100,21 @@ def test_a_camera_is_read_from_the_files_of_calibration(tmp_path, text):
     assert not any(camera.distortion[4:])
 
 
+def test_a_fisheye_is_read(tmp_path):
+    assert PixelCamera.from_yaml(written(tmp_path, KALIBR), "cam1") == PixelCamera(
+        (1, 1), (0, 0), distortion=[0.0] * 4, lens="equidistant"
+    )
+
+
 @pytest.mark.parametrize(("text", "name"), [(EUROC, None), (KALIBR, "cam0")], ids=["EuRoC", "Kalibr"])
 def test_the_mount_is_that_of_the_camera_on_its_body(tmp_path, text, name):
-    place, turn = read_mount(written(tmp_path, text), name)
+    place, turn, shift = mount = read_mount(written(tmp_path, text), name)
     np.testing.assert_allclose(place, [0.1, 0.2, 0.3])
     np.testing.assert_allclose(turn, TURN)
-    assert len(poses(np.arange(3.0)).mounted(place, turn).time) == 3
+    assert shift == (0.25 if name else 0)
+    camera = poses(np.arange(3.0)).mounted(*mount)
+    np.testing.assert_allclose(camera.time, np.arange(3.0) - shift)  # t_imu = t_cam + shift
+    np.testing.assert_allclose(camera.mount[1], TURN, atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -94,7 +122,8 @@ def test_the_mount_is_that_of_the_camera_on_its_body(tmp_path, text, name):
     [
         (KALIBR, None, "has the cameras cam0, cam1; give one of these names, not None"),
         (KALIBR, "cam7", "give one of these names, not 'cam7'"),
-        (KALIBR, "cam1", "the lens 'equidistant'; a PixelCamera is a pinhole behind one of"),
+        (KALIBR.replace("equidistant", "mei"), "cam1", "the lens 'mei'; a PixelCamera is a pinhole behind one of"),
+        (KALIBR.replace("[0, 0, 0, 0]", "[0, 0, 0, 0, 0]"), "cam1", "it must be 4 finite numbers, k1, k2, k3, k4, or"),
         (EUROC.replace("pinhole", "omni"), None, "with the model 'omni'"),
         (EUROC.replace("458.5,", ""), None, r"has intrinsics = \[457.25, .*\]; expected 4 finite numbers"),
         (EUROC.replace("458.5,", ".inf,"), None, "expected 4 finite numbers"),
@@ -173,6 +202,44 @@ def test_a_model_of_colmap_becomes_poses_tracks_and_points(tmp_path):
     assert np.abs(found[3].distance / place[:, 2] - 1).max() < 0.01  # from the smoothed poses
 
 
+def pack_colmap(text, folder, model=4):
+    """Write the binary model of one in text."""
+    folder.mkdir()
+    read = [[line.split() for line in (text / f"{name}.txt").read_text().splitlines() if line[:1] != "#"]
+            for name in ("cameras", "images", "points3D")]  # fmt: skip
+    (cameras, images, points), packed = read, [b"", b"", b""]
+    for number, _, width, height, *numbers in cameras:
+        packed[0] += struct.pack("<iiQQ8d", int(number), model, int(width), int(height), *map(float, numbers))
+    for head, body in zip(images[::2], images[1::2], strict=True):
+        packed[1] += struct.pack("<i7di", int(head[0]), *map(float, head[1:8]), int(head[8])) + head[9].encode() + b"\0"
+        packed[1] += struct.pack("<Q", len(body) // 3)
+        for u, v, point in zip(body[::3], body[1::3], body[2::3], strict=True):
+            packed[1] += struct.pack("<ddq", float(u), float(v), int(point))
+    for number, *place in (row[:4] for row in points):
+        packed[2] += struct.pack("<Q3d3BdQii", int(number), *map(float, place), 1, 2, 3, 0.5, 1, 1, 0)
+    counts = len(cameras), len(images) // 2, len(points)
+    for name, count, content in zip(("cameras", "images", "points3D"), counts, packed, strict=True):
+        (folder / f"{name}.bin").write_bytes(struct.pack("<Q", count) + content)
+    return folder
+
+
+def test_a_binary_model_is_that_in_text(tmp_path):
+    text = read_colmap(write_colmap(tmp_path), rate=20)
+    binary = read_colmap(pack_colmap(tmp_path, tmp_path / "sparse"), rate=20)
+    assert (binary.camera, binary.numbers) == (text.camera, text.numbers)
+    for mine, other in ((binary.pixels, text.pixels), (binary.seen, text.seen), (binary.points, text.points)):
+        np.testing.assert_array_equal(mine, other)
+    np.testing.assert_array_equal(binary.poses.position, text.poses.position)
+    found = read_folder(tmp_path, rate=20)
+    assert found.sentence == f"This is a folder of COLMAP, with 40 images, 3 points in {tmp_path}."
+    fisheye = read_colmap(pack_colmap(tmp_path, tmp_path / "fisheye", 5), rate=20).camera
+    assert (fisheye.lens, fisheye.distortion) == ("equidistant", text.camera.distortion)
+    for cut, message in ((20, "no model of COLMAP"), (-3, "no model of COLMAP")):
+        (tmp_path / "sparse" / "images.bin").write_bytes((tmp_path / "sparse" / "images.bin").read_bytes()[:cut])
+        with pytest.raises(ValueError, match=message):
+            read_colmap(tmp_path / "sparse", rate=20)
+
+
 def test_times_are_read_from_the_names_of_images(tmp_path):
     names = [f"{1403636579763555584 + 50_000_000 * k}.png" for k in range(40)]
     model = read_colmap(write_colmap(tmp_path, names=names), clock=Clock(1403636579763555584, 1e-9))
@@ -184,8 +251,8 @@ def test_times_are_read_from_the_names_of_images(tmp_path):
 @pytest.mark.parametrize(
     ("settings", "how", "message"),
     [
-        ({"model": "OPENCV_FISHEYE 752 480 1 1 0 0 0 0 0 0"}, {"rate": 20}, "model OPENCV_FISHEYE, none of SIMPLE_PIN"),
-        ({"model": "PINHOLE 752 480 wide 1 0 0"}, {"rate": 20}, "is no text model of COLMAP"),
+        ({"model": "FOV 752 480 1 1 0 0 0"}, {"rate": 20}, "model FOV, none of SIMPLE_PIN"),
+        ({"model": "PINHOLE 752 480 wide 1 0 0"}, {"rate": 20}, "is no model of COLMAP"),
         ({"names": ["a.png"] * 40}, {}, "image 'a.png' without a number for its time; give its rate"),
         ({"names": ["1.png"] * 40}, {}, "images with the same time"),
         ({"names": [""] * 40}, {"rate": 20}, "expected two images, and names"),
@@ -206,7 +273,7 @@ def test_tracks_of_a_model_are_split_by_times(tmp_path, settings):
 def test_a_folder_without_a_model_and_images_for_poses_are_told(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"name a folder with cameras.txt"):
         read_colmap(tmp_path)
-    with pytest.raises(ValueError, match=r"has the images of COLMAP, .* read its folder with .*read_colmap"):
+    with pytest.raises(ValueError, match=r"this is images.txt of COLMAP, .* read its folder with .*read_colmap"):
         read_tum(write_colmap(tmp_path) / "images.txt")
 
 

@@ -76,6 +76,36 @@ def test_a_lens_that_sees_nothing_there_says_so():
             PixelCamera((1, 1), distortion=wrong)
 
 
+FISHEYE = PixelCamera((282, 281), (416, 397), distortion=(-0.003, 0.054, -0.052, 0.011), lens="equidistant")
+
+
+@given(st.lists(st.tuples(st.floats(0, 1.4), st.floats(0, 6.28)), min_size=1, max_size=5))
+def test_what_a_fisheye_did_is_undone(directions):
+    angle, around = np.array(directions).T
+    image = np.tan(angle)[:, None] * np.stack([np.cos(around), np.sin(around)], axis=1)
+    pixels = FISHEYE.pixels(image)
+    a, (k1, k2, k3, k4) = angle, FISHEYE.distortion
+    seen = a * (1 + k1 * a**2 + k2 * a**4 + k3 * a**6 + k4 * a**8)
+    np.testing.assert_allclose(np.linalg.norm((pixels - FISHEYE.centre) / FISHEYE.focal, axis=1), seen, atol=1e-12)
+    np.testing.assert_allclose(FISHEYE.image(pixels), image, rtol=1e-9, atol=1e-12)
+
+
+def test_a_fisheye_is_that_of_opencv():
+    cv2 = pytest.importorskip("cv2")
+    image = np.random.default_rng(0).uniform(-3, 3, (20, 2))
+    expected = cv2.fisheye.distortPoints(image[None], FISHEYE.matrix, np.array(FISHEYE.distortion))[0]
+    np.testing.assert_allclose(FISHEYE.pixels(image), expected, atol=1e-9)
+
+
+def test_a_fisheye_shows_nothing_on_a_plane_beyond_a_right_angle():
+    wide = PixelCamera((100, 100), lens="equidistant")
+    assert np.isnan(wide.directions([[158.0, 0.0], [200.0, 0.0]])).all()
+    with pytest.raises(ValueError, match=r"no direction is seen at the pixel \(158, 0\).*in the order k1, k2, k3, k4"):
+        wide.image([158.0, 0.0])
+    with pytest.raises(ValueError, match="the lens is 'wide', none of radtan, equidistant"):
+        PixelCamera((1, 1), lens="wide")
+
+
 def test_a_ratio_of_powers():
     pixels = np.array([[300.0, 400.0], [0.0, 0.0]])
     assert SignalToNoise(20).sigma(pixels) == pytest.approx(np.sqrt(500**2 / 4) / 10)

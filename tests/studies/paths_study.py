@@ -40,14 +40,14 @@ AXES = {"z": np.eye(3), "x": [[0, 0, 1], [-1, 0, 0], [0, -1, 0]], "-z": np.diag(
 RIGHT = 0.05
 
 
-def recordings(poses, pixels):
+def recordings(poses, pixels, camera=CAMERA):
     """Bring poses and images, shape (K, n, 2) in pixels, as a user does: speeds by default, noise as it is said."""
     count, points = pixels.shape[:2]
     rows = {"time": np.repeat(poses.time, points), "id": np.tile(np.arange(points), count)}
     with tempfile.TemporaryDirectory() as folder:
         tracks = Path(folder, "tracks.csv")
         pd.DataFrame(rows | dict(zip("uv", pixels.reshape(-1, 2).T, strict=True))).to_csv(tracks, index=False)
-        return Recording.from_csv(tracks, poses.motion(), camera=CAMERA, point="id", pixel_sigma=PIXEL)
+        return Recording.from_csv(tracks, poses.motion(), camera=camera, point="id", pixel_sigma=PIXEL)
 
 
 def disturbed(poses, draw, metres, radians, kind="white", seconds=0.0):

@@ -6,11 +6,24 @@ import numpy as np
 import pytest
 from diagnosis_study import FAULTS, alone, clean, diagnosed, drawn, spoiled, together
 from sample_sizes import sampled
+from scipy.spatial.transform import Rotation
 
-from percept_obs import Camera, Gaussian, Scenario, diagnose, pinhole, record, rigid, scenarios
+from percept_obs import (
+    Camera,
+    Gaussian,
+    PixelCamera,
+    Poses,
+    Recording,
+    Scenario,
+    diagnose,
+    pinhole,
+    record,
+    rigid,
+    scenarios,
+)
 from percept_obs.figures import causes
 from percept_obs.recording import Unlikely
-from percept_obs.studies.diagnosis.causes import CAUSES
+from percept_obs.studies.diagnosis.causes import NUMBERS
 from percept_obs.studies.diagnosis.fitting import fit
 from percept_obs.studies.diagnosis.search import LIMITS, _fewest
 from percept_obs.studies.diagnosis.tracks import guess, seen, spikes, track_of
@@ -62,12 +75,12 @@ def test_lost_samples_and_one_output_are_explained_as_well():
     assert fit([track_of(single)], "nothing", ()).rms < 1e-6
 
 
-@pytest.mark.parametrize("mix_up", ["nothing", "w", "vehicle"])
+@pytest.mark.parametrize("mix_up", ["nothing", "w", "vehicle", "uv", "fisheye", "mount 5"])
 def test_derivatives_by_the_point_and_by_every_cause_are_those_of_differences(mix_up):
     track = track_of(SESSION[0])
-    point, wrong = guess(track, mix_up, {})[0], {key: np.full(cause.size, 0.01) for key, cause in CAUSES.items()}
+    point, wrong = guess(track, mix_up, {})[0], {key: np.full(cause.size, 0.01) for key, cause in NUMBERS.items()}
     point = point / np.linalg.norm(point)
-    found = seen(track, point, mix_up, wrong, [*CAUSES])
+    found = seen(track, point, mix_up, wrong, [*NUMBERS])
 
     def difference(change):
         return (change(1e-6) - change(-1e-6)) / 2e-6
@@ -75,7 +88,7 @@ def test_derivatives_by_the_point_and_by_every_cause_are_those_of_differences(mi
     for k in range(4):
         by = difference(lambda h, k=k: seen(track, point + h * np.eye(4)[k], mix_up, wrong).outputs)
         np.testing.assert_allclose(found.by_point[:, :, k], by, atol=1e-5 * np.abs(by).max())
-    steps = [(key, step) for key, cause in CAUSES.items() for step in np.eye(cause.size)]
+    steps = [(key, step) for key, cause in NUMBERS.items() for step in np.eye(cause.size)]
     for k, (key, step) in enumerate(steps):
         by = difference(
             lambda h, key=key, step=step: seen(track, point, mix_up, {**wrong, key: wrong[key] + h * step}).outputs
@@ -88,6 +101,68 @@ def test_nothing_is_said_of_clean_recordings(seed):
     found = diagnosed(clean(seed))
     assert not found.findings, found
     assert found.explained
+
+
+CAMERA = PixelCamera((500, 500), (320, 240))
+MOUNT = np.array([0.05, -0.1, 0.02]), Rotation.from_euler("zxy", [1.5, 0.1, -0.05]).as_matrix()
+BACK = -MOUNT[1].T @ MOUNT[0], MOUNT[1].T
+
+
+def carried_past(poses, changed, camera=CAMERA):
+    """Recordings of points that carried poses see, as somebody brings them with other poses and pixels."""
+    places = np.array([[0.5, 0.2, 5.0], [-0.8, 0.1, 4.0], [0.2, -0.6, 6.0]])
+    seen = np.stack([poses.rotation.inv().apply(place - poses.position) for place in places])
+    draw, (given, change) = np.random.default_rng(0), changed
+    for track in CAMERA.pixels(seen[..., :2] / seen[..., 2:]) + draw.normal(0, 0.3, (3, len(poses.time), 2)):
+        outputs, variance = camera.image(change(track)), camera.variance(0.3)
+        yield Recording(poses.time, outputs, ("y1", "y2"), pinhole(), given.motion(), noise_variance=variance)
+
+
+def on_a_path():
+    time = np.arange(100) / 20
+    turning = np.stack([0.1 * np.sin(2 * time), 0.12 * np.cos(1.5 * time), 0.3 * np.sin(time)], axis=1)
+    position = np.stack([0.4 * np.sin(2 * time), 0.3 * np.cos(1.3 * time), 0.2 * np.sin(0.9 * time)], axis=1)
+    return Poses(time, position, Rotation.from_rotvec(turning).as_quat())
+
+
+def inverted(poses):
+    back = poses.rotation.inv()
+    return Poses(poses.time, -back.apply(poses.position.copy()), back.as_quat())
+
+
+def body(poses):
+    return replace(poses.mounted(*BACK), mount=None)
+
+
+def with_quaternions(poses, quaternions):
+    return Poses(poses.time, poses.position, quaternions)
+
+
+def same(value):
+    return value
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("wanted", "poses", "pixels", "camera"),
+    [
+        ("poses inverted", inverted, same, CAMERA),
+        ("rotations inverted", lambda p: with_quaternions(p, p.rotation.inv().as_quat()), same, CAMERA),
+        ("quaternion order", lambda p: with_quaternions(p, np.roll(p.orientation, 1, axis=1)), same, CAMERA),
+        ("quaternion order", lambda p: with_quaternions(p, np.roll(p.orientation, -1, axis=1)), same, CAMERA),
+        ("mount inverted", lambda p: body(p).mounted(*BACK), same, CAMERA),
+        ("mount left out", body, same, CAMERA),
+        ("u and v exchanged", same, lambda pixels: pixels[:, ::-1], CAMERA),
+        ("image size", same, lambda pixels: pixels / 2, CAMERA),
+        ("focal length", same, same, PixelCamera((1000, 1000), (320, 240))),
+        ("focal length", same, same, PixelCamera((250, 250), (320, 240))),
+        ("nothing", same, same, CAMERA),
+    ],
+)
+def test_mix_ups_of_files_and_calibration_are_named(wanted, poses, pixels, camera):
+    exact = on_a_path()
+    found = diagnosed([*carried_past(exact, (poses(exact), pixels), camera)])
+    assert (found.named, found.explained) == (wanted, True), found.sentence
 
 
 @pytest.mark.night

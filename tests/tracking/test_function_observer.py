@@ -90,6 +90,10 @@ def failing(*arguments):
     raise KeyError("lost")
 
 
+def dividing(*arguments):
+    return 1 / 0
+
+
 test_what_a_function_gives_is_checked = refuses(
     lambda changes, start: track(SEEN, extended_kalman(BOTH, **changes), start),
     (
@@ -103,6 +107,7 @@ test_what_a_function_gives_is_checked = refuses(
         r"estimate of the by hand observer gives shape \(9,\) at 0 s, not \(3,\)",
     ),
     ({"step": failing}, START, "step of the by hand observer fails at 0.01 s: KeyError: 'lost'"),
+    ({"step": dividing}, START, "step of the by hand observer fails at 0.01 s: ZeroDivisionError: division by zero"),
     ({"covariance": lambda state: state}, START, r"covariance of .* not \(3, 3\)"),
     ({}, {"y4": 1.0}, "the start has no coordinate y4; give estimates of y1, y2, y3"),
 )

@@ -10,7 +10,7 @@ import numpy as np
 
 from percept_obs.recording import Recording
 from percept_obs.recording.plausibility import LARGEST_USUAL
-from percept_obs.studies.diagnosis.causes import CAUSES, LARGEST_OFFSET, MIX_UPS
+from percept_obs.studies.diagnosis.causes import CAUSES, FOCAL, LARGEST_OFFSET, MIX_UPS
 from percept_obs.studies.diagnosis.fitting import Estimate
 from percept_obs.studies.diagnosis.search import LIMITS, Found, search
 from percept_obs.studies.diagnosis.tracks import track_of
@@ -28,7 +28,9 @@ class Finding:
     ----------
     key : str
         "time offset", "focal length", "distortion ignored", "gyro bias", "scale drift", "rolling shutter",
-        "sign of w_c", "sign of v", "flipped axis", "frames swapped", "mismatch", "outliers" or "pixels".
+        "sign of w_c", "sign of v", "flipped axis", "frames swapped", "poses inverted", "rotations inverted",
+        "quaternion order", "mount inverted", "mount left out", "u and v exchanged", "image size",
+        "fisheye ignored", "mismatch", "outliers" or "pixels".
     sentence : str
         The mistake in words.
     evidence : str
@@ -245,7 +247,8 @@ def _findings(found: Found, sources: Sequence[str]) -> Iterator[Finding]:
             yield Finding(key, said, f"{evidence}, while one point each explains the others", float(time[0]))
         elif key in CAUSES:
             value, deviation = best.wrong[key], found.estimates[key].deviation
-            size = float(value[0] if len(value) == 1 else np.linalg.norm(value)) + (key == "focal length")
+            size = float(value[0] if len(value) == 1 else np.linalg.norm(value))
+            size = math.exp(size) if key == FOCAL else size
             yield Finding(key, CAUSES[key].sentence(value), evidence, size, deviation, instead)
         else:
             yield Finding(key, MIX_UPS[best.mix_up].sentence, evidence, instead=instead)

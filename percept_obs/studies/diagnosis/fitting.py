@@ -11,7 +11,7 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.recording.normal import NormalEquations, project_out
-from percept_obs.studies.diagnosis.causes import CAUSES
+from percept_obs.studies.diagnosis.causes import NUMBERS
 from percept_obs.studies.diagnosis.tracks import Track, across_of, guess, seen
 
 FINEST = 1e-4
@@ -117,7 +117,7 @@ class Fit:
         columns, time = np.concatenate(rows), np.concatenate(times)
         block = np.searchsorted(np.quantile(time, np.arange(1, BLOCKS) / BLOCKS), time)
         scores = columns.T @ (self.values[:, None] * (block[:, None] == np.arange(BLOCKS)))
-        owner = np.repeat(keys, [CAUSES[key].size for key in keys])
+        owner = np.repeat(keys, [NUMBERS[key].size for key in keys])
         return NormalEquations(owner, columns.T @ columns, scores, np.full(len(owner), np.inf))
 
     def _estimate(self, normal: NormalEquations, key: str) -> Estimate:
@@ -145,7 +145,7 @@ def fit(tracks: Sequence[Track], mix_up: str, keys: Sequence[str], start: Mappin
 
     Points are in front of the camera or infinitely far away, and numbers within their causes' ranges.
     """
-    begin = {key: np.zeros(CAUSES[key].size) for key in keys} | {k: v for k, v in (start or {}).items() if k in keys}
+    begin = {key: np.zeros(NUMBERS[key].size) for key in keys} | {k: v for k, v in (start or {}).items() if k in keys}
     found = _solved(tracks, mix_up, begin, [guess(track, mix_up, begin) for track in tracks])
     behind = [point[3] < 0 for point in found.points]
     if any(behind):  # a point infinitely far away in front explains the samples next best
@@ -164,8 +164,8 @@ def _solved(
     from scipy.linalg import block_diag
     from scipy.optimize import least_squares
 
-    sizes = [*(CAUSES[key].size for key in begin), *(across.shape[1] for _, across in guesses)]
-    largest = np.repeat([*(CAUSES[key].largest for key in begin), *(np.inf for _ in guesses)], sizes)
+    sizes = [*(NUMBERS[key].size for key in begin), *(across.shape[1] for _, across in guesses)]
+    largest = np.repeat([*(NUMBERS[key].largest for key in begin), *(np.inf for _ in guesses)], sizes)
     start = np.concatenate([*begin.values(), np.zeros(sum(sizes[len(begin) :]))])
 
     def parted(x: Array) -> tuple[dict[str, Array], list[Array]]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from percept_obs.compile import Array
+from percept_obs.recording.pose_errors import PoseErrors
 from percept_obs.recording.reckoning import transitions
 from percept_obs.studies.diagnosis.causes import MIX_UPS
 from percept_obs.system.motion import Motion, coefficients
@@ -71,6 +72,19 @@ def _known(motion: Motion, begin: float, end: float, unit: float) -> tuple[Array
     return times, A[: count + 1], b[: count + 1], A[count + 1 :], b[count + 1 :]
 
 
+def _poses(errors: PoseErrors, times: Array, maps: Array, unit: float) -> Array:
+    """Poses of a path, matrices of shape (N, 4, 4): it begins at the mean of where the given poses say that it does."""
+    from scipy.interpolate import make_interp_spline
+    from scipy.spatial.transform import Rotation
+
+    inside = (errors.time >= times[0]) & (errors.time <= times[-1])
+    turns, moved = errors.turns[inside], make_interp_spline(times, maps, k=3)(errors.time[inside])
+    begin = np.eye(4)
+    begin[:3, :3] = Rotation.from_matrix(turns @ moved[:, :3, :3]).mean().as_matrix()
+    begin[:3, 3] = (errors.position[inside] / unit + np.einsum("kij,kj->ki", turns, moved[:, :3, 3])).mean(axis=0)
+    return np.asarray(begin @ np.linalg.inv(maps))
+
+
 @lru_cache(maxsize=256)
 def path(
     motion: Motion, begin: float, end: float, unit: float, mix_up: str, bias: tuple[float, ...], drift: float
@@ -89,4 +103,11 @@ def path(
     steps = np.broadcast_to(np.eye(4), (len(A1), 4, 4)).copy()
     steps[:, :3] = transitions(A_step, b_step, 1.0)
     maps = np.stack(list(accumulate(steps, lambda before, step: step @ before, initial=np.eye(4))))
+    if (right := MIX_UPS[mix_up].poses) and motion.errors:
+        mount = motion.errors.mount and (motion.errors.mount[0] / unit, motion.errors.mount[1])
+        poses = right(_poses(motion.errors, times, maps, unit), mount)
+        maps = np.linalg.inv(poses) @ poses[0]
+        rates = np.gradient(maps[:, :3], float(step), axis=0, edge_order=2)
+        A = rates[:, :, :3] @ maps[:, :3, :3].swapaxes(1, 2)
+        b = rates[:, :, 3] - np.einsum("nij,nj->ni", A, maps[:, :3, 3])
     return Path(times, maps, A, b)

@@ -9,7 +9,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from percept_obs.compile import Array, Flags
-from percept_obs.studies.diagnosis.causes import BEND, BIAS, CAUSES, DRIFT, LARGEST_OFFSET, MIX_UPS, OFFSET, SHUTTER
+from percept_obs.studies.diagnosis.causes import (
+    BEND,
+    BIAS,
+    CAUSES,
+    DRIFT,
+    FOCAL,
+    LARGEST_OFFSET,
+    MIX_UPS,
+    OFFSET,
+    SHUTTER,
+)
 from percept_obs.studies.diagnosis.fitting import FINEST, Estimate, Fit, fit
 from percept_obs.studies.diagnosis.tracks import Track, guess, numbers_of, path_of, seen
 
@@ -28,6 +38,7 @@ class Limits:
     tried: int = (
         2  # mix-ups with which wrong numbers are fitted, those that explain most without, for most time goes there
     )
+    guessed: int = 2  # mix-ups of a kind that are fitted, those with which linear guesses leave least
     apart: float = 3.0  # times what is left of the other tracks, which shows that a track may be of two points
     places: int = 12  # at which the second point may begin or end at first: a part of the track between two shows it
     rounds: int = 3  # times that each sample is then given to the point that explains it better
@@ -78,7 +89,8 @@ def search(tracks: tuple[Track, ...], noise: float | None) -> Found:
     """Return the mistakes that explain tracks best, with noise of a known deviation or not."""
     keys, bare = _possible(tracks), _trimmed(fit(tracks, "nothing", ()), noise)
     tracks = tuple(bare.tracks)
-    screened = [bare, *(fit(tracks, mix_up, ()) for mix_up in MIX_UPS if mix_up != "nothing")]
+    screened = [bare, *_screened(bare, noise)]
+    names = [*dict.fromkeys(each.mix_up for each in screened)]
     switch = _switched(bare, noise)
     if switch is not None and _explained(parted := fit(switch.tracks, "nothing", ()), noise):
         best = _best([parted], keys, noise)
@@ -86,19 +98,21 @@ def search(tracks: tuple[Track, ...], noise: float | None) -> Found:
         best = _best(screened, keys, noise)
         switch = _switched(best, noise)
         if switch is not None:
-            fits = [fit(switch.tracks, mix_up, ()) for mix_up in MIX_UPS]
+            fits = [fit(switch.tracks, *_own(mix_up)) for mix_up in names]
             parted = _best(fits, keys, noise)
             if _explained(best, noise) or parted.gain(best) < LIMITS.clearly:
                 switch = None
             else:
                 best = parted
     best = _trimmed(_fewest(best), noise)
-    explained, needed = _explained(best, noise), _needed(best, keys)
+    keys = [key for key in _together(best.mix_up, keys) if key not in MIX_UPS[best.mix_up].own]
+    explained, needed = _explained(best, noise), _needed(best, keys, names)
     estimates = {key: Estimate(np.zeros(each.size), math.inf, 0.0) for key, each in CAUSES.items()}
     estimates |= best.estimates(keys)
     if switch is not None:
         needed = {"mismatch": (bare, ())} | needed
-    alike = [each for each in screened[1:] if each.rms < LIMITS.alike * bare.rms + FINEST / 10]
+    plain = [each for each in screened[1:] if MIX_UPS[each.mix_up].plain and not each.wrong]
+    alike = [each for each in plain if each.rms < LIMITS.alike * bare.rms + FINEST / 10]
     told = [key for key in keys if LIMITS.surely * estimates[key].deviation < CAUSES[key].usual]
     hidden = [key for key in CAUSES if key not in told]
     if explained and best.mix_up == "nothing":
@@ -108,12 +122,12 @@ def search(tracks: tuple[Track, ...], noise: float | None) -> Found:
     return Found(bare, best, explained, switch, needed, estimates, not_told, outliers)
 
 
-def _needed(best: Fit, keys: Sequence[str]) -> dict[str, tuple[Fit, tuple[str, ...]]]:
+def _needed(best: Fit, keys: Sequence[str], names: Sequence[str]) -> dict[str, tuple[Fit, tuple[str, ...]]]:
     """Mistakes of the best fit, as `Found` has them: the mix-up, then the numbers, those that explain most first."""
     found: dict[str, tuple[Fit, tuple[str, ...]]] = {}
     if best.mix_up != "nothing":
-        found[MIX_UPS[best.mix_up].key] = (_without(best, best.wrong, "nothing"), _other_mix_ups(best))
-    alone = {key: _without(best, _rest(best, key)) for key in best.wrong}
+        found[MIX_UPS[best.mix_up].key] = (_without(best, best.wrong, "nothing"), _other_mix_ups(best, names))
+    alone = {key: _without(best, _rest(best, key)) for key in _reported(best)}
     others = [key for key in keys if key not in best.wrong]
     for key, without in sorted(alone.items(), key=lambda each: -each[1].squares):
         as_good = [other for other in others if best.gain(_without(best, [*_rest(best, key), other])) < LIMITS.clearly]
@@ -129,6 +143,53 @@ def _possible(tracks: Sequence[Track]) -> list[str]:
     varying = not all(track.motion.signal and track.motion.signal.constant for track in tracks)
     possible = {OFFSET: varying, BIAS: rigid, DRIFT: rigid, BEND: both, SHUTTER: both and varying}
     return [key for key in CAUSES if possible.get(key, True)]
+
+
+def _own(mix_up: str) -> tuple[str, list[str], dict[str, Array]]:
+    """A mix-up with its own numbers, and where their fit starts."""
+    own = MIX_UPS[mix_up].own
+    return mix_up, [*own], {key: np.array(start) for key, start in own.items()}
+
+
+def _together(mix_up: str, keys: Sequence[str]) -> list[str]:
+    """Keys of the numbers that can be fitted with a mix-up; poses drift by no bias."""
+    kept = [key for key in keys if not (MIX_UPS[mix_up].poses and key in (BIAS, DRIFT))]
+    return [*dict.fromkeys([*MIX_UPS[mix_up].own, *kept])]
+
+
+def _reported(best: Fit) -> list[str]:
+    """Keys of a fit's numbers that are mistakes by themselves."""
+    return [key for key in best.wrong if key not in MIX_UPS[best.mix_up].own]
+
+
+def _screened(bare: Fit, noise: float | None) -> list[Fit]:
+    """Fits with mix-ups that can be: all plain ones, and if the tracks are not explained those that a guess prefers.
+
+    Mix-ups with numbers of their own, and half and twice the focal length, are asked after those without.
+    """
+    tracks = bare.tracks
+
+    def best(names: Sequence[str]) -> list[str]:
+        left = {name: sum(_squares(track, name, _own(name)[2]) for track in tracks) for name in names}
+        return sorted(left, key=left.__getitem__)[: LIMITS.guessed]
+
+    both = all(track.outputs.shape[1] == 2 and len(track.whole) for track in tracks)
+    can_be = {
+        name: each
+        for name, each in MIX_UPS.items()
+        if name != "nothing" and (both or each.plain) and all(each.can_be(track.motion.errors) for track in tracks)
+    }
+    plain = [name for name, each in can_be.items() if each.plain]
+    if _explained(bare, noise):
+        return [fit(tracks, name, ()) for name in plain]
+    others = best([name for name, each in can_be.items() if not each.plain and not each.own])
+    found = [fit(tracks, name, ()) for name in (*plain, *others)]
+    if any(_explained(each, noise) for each in found):
+        return found
+    own = dict.fromkeys(each.key for each in can_be.values() if each.own)
+    groups = [best([name for name, each in can_be.items() if each.own and each.key == key]) for key in own]
+    found += [fit(tracks, *_own(name)) for names in groups for name in names]
+    return found + [fit(tracks, "nothing", [FOCAL], {FOCAL: np.array([size])}) for size in (-math.log(2), math.log(2))]
 
 
 def _explained(found: Fit, noise: float | None) -> bool:
@@ -155,23 +216,38 @@ def _trimmed(found: Fit, noise: float | None) -> Fit:
 def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> Fit:
     """Fit of all numbers, with the mix-up that explains the samples; the first fit has none."""
     first, *others = screened
+    told = [] if _explained(first, noise) else [each for each in others if _explained(each, noise)]
+    other = _fewest(_joint(_likeliest(told), keys)) if told else None
+    if other and not any(each.wrong for each in told):
+        return other
     best = _joint(first, keys)
+    if other and (not _explained(best, noise) or other.gain(_fewest(best)) > 0):
+        return other
     if _explained(best, noise):
         return best
     better = sorted((each for each in others if each.typical < first.typical), key=lambda each: each.typical)
     for other in (_joint(each, keys) for each in better[: LIMITS.tried]):
         most = LIMITS.most_left * float(np.median([track.spread for track in other.tracks]))
-        if _explained(other, noise) or other.typical < min(best.typical / LIMITS.worse, most):
+        plain = MIX_UPS[other.mix_up].plain
+        if _explained(other, noise) or (plain and other.typical < min(best.typical / LIMITS.worse, most)):
             best = min(best, other, key=lambda each: (not _explained(each, noise), each.typical))
     return best
+
+
+def _likeliest(told: Sequence[Fit]) -> Fit:
+    """Fit with the fewest numbers, unless another is clearly likelier: poses' noise is fitted by more of them."""
+    simplest = min(told, key=lambda each: (each.unknowns, each.typical))
+    best = max(told, key=lambda each: each.gain(simplest))
+    return best if best.gain(simplest) > LIMITS.clearly else simplest
 
 
 def _joint(bare: Fit, keys: Sequence[str]) -> Fit:
     """Fit of all numbers, from the offset that explains the samples best by itself."""
     tracks, mix_up = bare.tracks, bare.mix_up
     starts = [{OFFSET: np.array([late])} for late in (OFFSETS if OFFSET in keys else (0.0,))]
-    start = min(starts, key=lambda start: sum(_squares(track, mix_up, start) for track in tracks))
-    return min(fit(tracks, mix_up, keys, start), bare, key=lambda each: each.squares)
+    start = min(starts, key=lambda start: sum(_squares(track, mix_up, {**bare.wrong, **start}) for track in tracks))
+    joint = fit(tracks, mix_up, _together(mix_up, keys), {**start, **bare.wrong})
+    return min(joint, bare, key=lambda each: each.squares)
 
 
 def _squares(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> float:
@@ -186,14 +262,18 @@ def _rest(best: Fit, key: str) -> list[str]:
 
 
 def _without(best: Fit, keys: Iterable[str], mix_up: str | None = None) -> Fit:
-    """Fit of some numbers only, or with another mix-up, from the best one."""
-    return fit(best.tracks, best.mix_up if mix_up is None else mix_up, [*keys], best.wrong)
+    """Fit of some numbers only, or with another mix-up and its own ones, from the best one."""
+    if mix_up is None:
+        return fit(best.tracks, best.mix_up, [*keys], best.wrong)
+    _, _, start = _own(mix_up)
+    kept = [key for key in keys if key not in MIX_UPS[best.mix_up].own]
+    return fit(best.tracks, mix_up, _together(mix_up, kept), {**best.wrong, **start})
 
 
 def _fewest(best: Fit) -> Fit:
     """Fit with the fewest numbers that explains the samples as well: the least sure one is left out in turn."""
-    while best.wrong:
-        weights = {key: _weight(key, estimate) for key, estimate in best.estimates([*best.wrong]).items()}
+    while kept := _reported(best):
+        weights = {key: _weight(key, estimate) for key, estimate in best.estimates(kept).items()}
         key = min(weights, key=weights.__getitem__)
         without = _without(best, _rest(best, key))
         if weights[key] >= 1 and best.gain(without) > LIMITS.clearly:
@@ -209,10 +289,10 @@ def _weight(key: str, estimate: Estimate) -> float:
     return min(estimate.sure / LIMITS.surely, size / cause.smallest) * inside
 
 
-def _other_mix_ups(best: Fit) -> tuple[str, ...]:
+def _other_mix_ups(best: Fit, names: Sequence[str]) -> tuple[str, ...]:
     """Mix-ups that explain the samples as well, by key, and with their sentence if the key is the best one's."""
     own = MIX_UPS[best.mix_up].key
-    others = [name for name in MIX_UPS if name not in ("nothing", best.mix_up)]
+    others = [name for name in names if name not in ("nothing", best.mix_up)]
     as_good = [MIX_UPS[name] for name in others if best.gain(_without(best, best.wrong, name)) < LIMITS.clearly]
     return tuple(dict.fromkeys(each.sentence if each.key == own else each.key for each in as_good))
 

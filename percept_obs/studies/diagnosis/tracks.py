@@ -15,11 +15,13 @@ from percept_obs.recording.reckoning import point_on_rays
 from percept_obs.studies.diagnosis.causes import (
     BEND,
     BIAS,
-    CAUSES,
+    CENTRE,
     DRIFT,
     FOCAL,
     LARGEST_OFFSET,
     MIX_UPS,
+    MOUNT,
+    NUMBERS,
     OFFSET,
     SHUTTER,
 )
@@ -140,35 +142,68 @@ def seen(track: Track, point: Array, mix_up: str, wrong: Mapping[str, Array], as
     Derivatives are those by the point, shape (K, m, 4), and by the q numbers of the causes asked for, shape (K, m, q).
     """
     number = numbers_of(wrong)
-    late, row, more, bend = (float(number[key][0]) for key in (OFFSET, SHUTTER, FOCAL, BEND))
-    way = path_of(track, mix_up, number)
+    late, row, longer, bend = (float(number[key][0]) for key in (OFFSET, SHUTTER, FOCAL, BEND))
+    way, (turn, _) = path_of(track, mix_up, number), _mount(track, number)
     times = np.clip(track.time - late + row * track.rows, way.times[0], way.times[-1])
-    m, count, maps = track.outputs.shape[1], len(times), way.spline(times)
+    m, count, maps, ratio = track.outputs.shape[1], len(times), _maps(track, way, times, number), np.exp(longer)
     with np.errstate(all="ignore"):
         values = np.stack(_image(track.surface)(*(maps @ point).T), axis=-1)
     values = np.nan_to_num(values, nan=FAR, posinf=FAR, neginf=-FAR)
     y, by_position = values[:, :m], values[:, m:].reshape(count, m, 3)
+    if MIX_UPS[mix_up].fisheye:
+        y, slope = _through_fisheye(y)
+        by_position = slope @ by_position
     square = (y**2).sum(axis=1)[:, None]
     bent = y * (1 + bend * square)
     lens = (1 + bend * square)[:, :, None] * np.eye(m) + 2 * bend * y[:, :, None] * y[:, None, :]
-    by_position = (1 + more) * lens @ by_position
-    found = {FOCAL: bent[:, :, None], BEND: ((1 + more) * y * square)[:, :, None]}
+    by_position = ratio * lens @ by_position
+    by_body = by_position @ turn
+    found = {FOCAL: ratio * bent[:, :, None], BEND: (ratio * y * square)[:, :, None]}
+    found[CENTRE] = np.broadcast_to(np.eye(m), (count, m, m))
+    if MOUNT in asked:
+        turned = np.einsum("aij,nj->nia", -SPINS, maps @ point)
+        shifted = np.broadcast_to(-turn * point[3] / track.unit, turned.shape)
+        found[MOUNT] = by_position @ np.concatenate([turned, shifted], axis=2)
     if OFFSET in asked or SHUTTER in asked:
-        moved = by_position @ (way.spline(times, 1) @ point)[:, :, None]
+        moved = by_body @ (way.spline(times, 1) @ point)[:, :, None]
         found |= {OFFSET: -moved, SHUTTER: moved * track.rows[:, None, None]}
     if BIAS in asked or DRIFT in asked:
         spins, _ = MIX_UPS[mix_up].undone(SPINS, np.zeros((3, 3)))
         turned = np.einsum("aij,nj->nia", spins, way.maps[:, :3] @ point)
         shifted = -point[3] * (way.times - way.times[0])[:, None] * way.b
         changes = way.change(times, np.concatenate([turned, shifted[:, :, None]], axis=2))
-        found |= {BIAS: by_position @ changes[:, :, :3], DRIFT: by_position @ changes[:, :, 3:]}
+        found |= {BIAS: by_body @ changes[:, :, :3], DRIFT: by_body @ changes[:, :, 3:]}
     by_cause = np.concatenate([np.empty((count, m, 0)), *(found[key] for key in asked)], axis=2)
-    return Seen((1 + more) * bent, by_position @ maps, by_cause)
+    return Seen(ratio * bent + number[CENTRE][:m], by_position @ maps, by_cause)
+
+
+def _mount(track: Track, number: Mapping[str, Array]) -> tuple[Array, Array]:
+    """Matrix from the body's axes to the camera's, and the camera's place on the body by the unit of length."""
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_rotvec(-number[MOUNT][:3]).as_matrix(), number[MOUNT][3:] / track.unit
+
+
+def _maps(track: Track, way: Path, times: Array, number: Mapping[str, Array]) -> Array:
+    """Maps of (X, 1) on the body at the beginning to the camera's position at some times, shape (K, 3, 4)."""
+    turn, place = _mount(track, number)
+    maps = way.spline(times)
+    maps[:, :, 3] -= place
+    return np.asarray(turn @ maps)
+
+
+def _through_fisheye(y: Array) -> tuple[Array, Array]:
+    """Images of an equidistant lens, shape (K, m), of those of a pinhole, and their derivatives by these."""
+    radius = np.linalg.norm(y, axis=1)[:, None] + 1e-9
+    angle, axis = np.arctan(radius), y / radius
+    along, across = 1 / (1 + radius**2), angle / radius
+    slope = across[:, :, None] * np.eye(y.shape[1]) + (along - across)[:, :, None] * axis[:, :, None] * axis[:, None]
+    return angle * axis, slope
 
 
 def numbers_of(wrong: Mapping[str, Array]) -> dict[str, Array]:
     """All wrong numbers, 0 where there is none."""
-    return {key: wrong.get(key, np.zeros(cause.size)) for key, cause in CAUSES.items()}
+    return {key: wrong.get(key, np.zeros(cause.size)) for key, cause in NUMBERS.items()}
 
 
 def path_of(track: Track, mix_up: str, number: Mapping[str, Array]) -> Path:
@@ -191,9 +226,13 @@ def guess(track: Track, mix_up: str, wrong: Mapping[str, Array]) -> tuple[Array,
     ray = vectorised(surface.image_coordinates, surface.ray, surface.values)
     if len(rows) >= 3:
         times = np.clip(track.time[rows] - float(number[OFFSET][0]), way.times[0], way.times[-1])
-        rays = np.stack(ray(*(track.outputs[rows] / (1 + float(number[FOCAL][0]))).T), axis=-1)
+        images = (track.outputs[rows] - number[CENTRE][: track.outputs.shape[1]]) / np.exp(number[FOCAL][0])
+        if MIX_UPS[mix_up].fisheye:
+            angle = np.linalg.norm(images, axis=1, keepdims=True) + 1e-9
+            images = images / angle * np.tan(np.minimum(angle, 1.5))
+        rays = np.stack(ray(*images.T), axis=-1)
         rays /= np.linalg.norm(rays, axis=1, keepdims=True)
-        point, along, directions = point_on_rays(rays, way.spline(times))
+        point, along, directions = point_on_rays(rays, _maps(track, way, times, number))
         if point[3] > 0 and np.median(np.abs(along)) > 1e-6:
             return point, directions
     first = [np.flatnonzero(column) for column in track.used.T]
