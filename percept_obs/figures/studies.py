@@ -228,12 +228,12 @@ def camera_ways(loops: Mapping[str, Servoing], start: int = 0, axes: Sequence[Ax
     >>> from percept_obs import figures
     >>> from percept_obs.studies.servoing import servo, starts
     >>> print(figures.camera_ways({"true depth": servo(starts(3), "true", duration=6.0)}).text.split(". ")[1])
-    true depth: the camera begins 1.8 m from the goal, and ends 0 m from it
+    true depth: the camera begins 0.7 m from the goal, and ends 0 m from it
     """
     if not loops:
         raise ValueError("there are no loops to draw; servo(starts(20), 'true') makes one")
     above, seen = canvases(axes, ["the camera's way", "its picture"], 4.2, ncols=2)
-    yield "Left, the camera's way from above, with its goal at the origin; right, the ways of the points in its picture."
+    yield "Left, the camera's way from above, with its goal at the origin; right, the points' ways in its picture."
     for k, (label, loop) in enumerate(loops.items()):
         looks = look.style(k) | {"marker": ""}
         way = loop.camera(start)
