@@ -7,6 +7,7 @@ from percept_obs.figures.runs import distance, runs_over_time, signals
 from percept_obs.figures.scene import scene, velocities
 from percept_obs.figures.structure import cases, depth_errors, error_norm, quantities
 from percept_obs.figures.studies import (
+    camera_ways,
     causes,
     chatter,
     comparison,
@@ -19,6 +20,7 @@ from percept_obs.figures.studies import (
 __all__ = [
     "Figure",
     "bound_map",
+    "camera_ways",
     "cases",
     "causes",
     "chatter",

@@ -17,7 +17,7 @@ from percept_obs.studies.comparison import Comparison
 from percept_obs.studies.diagnosis import Diagnosis
 from percept_obs.studies.diagnosis.causes import CAUSES
 from percept_obs.studies.sensitivity import SHARE, Sensitivity
-from percept_obs.studies.servoing import Servoing
+from percept_obs.studies.servoing import GOAL, Servoing
 from percept_obs.validation import Kind
 
 if TYPE_CHECKING:
@@ -210,6 +210,48 @@ def servoing(loops: Mapping[str, Servoing], axes: Sequence[Axes] | None = None) 
     panels[-1].set_xlabel("time (s)")
     legend_above(panels[0])
     return panels
+
+
+@figure("there are no loops, or there are not two axes")
+def camera_ways(loops: Mapping[str, Servoing], start: int = 0, axes: Sequence[Axes] | None = None) -> Drawing:
+    """The camera's way from above on the left, and on the right what it sees of its four points, from one start.
+
+    Parameters
+    ----------
+    loops : mapping of labels to Servoing
+        From `percept_obs.studies.servoing.servo`.
+    start : int
+        Which start of the loops.
+
+    Examples
+    --------
+    >>> from percept_obs import figures
+    >>> from percept_obs.studies.servoing import servo, starts
+    >>> print(figures.camera_ways({"true depth": servo(starts(3), "true", duration=6.0)}).text.split(". ")[1])
+    true depth: the camera begins 0.7 m from the goal, and ends 0 m from it
+    """
+    if not loops:
+        raise ValueError("there are no loops to draw; servo(starts(20), 'true') makes one")
+    above, seen = canvases(axes, ["the camera's way", "its picture"], 4.2, ncols=2)
+    yield "Left, the camera's way from above, with its goal at the origin; right, the points' ways in its picture."
+    for k, (label, loop) in enumerate(loops.items()):
+        looks = look.style(k) | {"marker": ""}
+        way = loop.camera(start)
+        above.plot(way[:, 0], way[:, 2], label=label, **looks)
+        above.plot(*way[0, [0, 2]], color=look.BLACK, **look.START | {"label": "" if k else "start"})
+        images = loop.coordinates[start, ..., :2]
+        seen.plot(images[..., 0], images[..., 1], **looks)
+        seen.plot(*images[0].T, color=look.BLACK, **look.START | {"label": ""})
+        first, last = np.linalg.norm(way[[0, -1]], axis=1)
+        yield f"{label}: the camera begins {first:.1f} m from the goal, and ends {abs(round(last, 2)):g} m from it."
+    above.plot(GOAL[:, 0], GOAL[:, 2], color=look.BLACK, linestyle="", marker="x", label="points")
+    above.plot(0, 0, color=look.BLACK, **look.END | {"label": "goal"})
+    seen.plot(*next(iter(loops.values())).goal[:, :2].T, color=look.BLACK, **look.END | {"label": ""})
+    above.set(xlabel="to the right (m)", ylabel="ahead (m)", aspect="equal")
+    seen.set(xlabel="$y_{1}$", ylabel="$y_{2}$", aspect="equal")
+    seen.invert_yaxis()  # as in a picture: y2 points down
+    legend_above(above, fitting=40)
+    return [above, seen]
 
 
 @figure("there is nothing to draw on one of the sides, or there are not two axes")

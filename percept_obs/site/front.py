@@ -16,7 +16,7 @@ from percept_obs.site.pages import slug
 STEPS = {
     "See it, derive it": ("00", "01", "08"),
     "Observe": ("02", "03", "04"),
-    "Go further": ("05", "06", "07", "10", "15", "16"),
+    "Go further": ("05", "06", "07", "10", "15", "16", "17"),
     "Doubt": ("09", "11", "12", "13", "14"),
 }
 """Steps of the course, each with its notebooks."""

@@ -123,6 +123,15 @@ class Servoing:
         seen = np.moveaxis(self.coordinates, -1, 0)
         return vectorised(KNOWN, [STEERING.excitation])(*seen, *_parameters(self.velocity))[0]
 
+    def camera(self, start: int = 0) -> Array:
+        """Places of the camera in the axes that it has at the goal, in metres, shape (K, 3)."""
+        y1, y2, inverse = np.moveaxis(self.coordinates[start], -1, 0)
+        points = np.stack([y1, y2, np.ones_like(y1)], axis=-1) / inverse[..., None]
+        right, down = (points[:, k] - points[:, 0] for k in (2, 1))  # two sides of the square
+        axes = np.stack([right, down, np.cross(right, down)], axis=1)
+        axes /= np.linalg.norm(axes, axis=2, keepdims=True)
+        return GOAL.mean(axis=0) - (axes @ points.mean(axis=1)[..., None])[..., 0]
+
     def recording(self, point: int = 0, start: int = 0) -> Recording:
         """Samples of one point, with its true motion in samples, for `track` and labs."""
         ends = np.stack([self.time[:-1], self.time[1:] - 1e-6], axis=-1).ravel()  # each velocity is held

@@ -575,6 +575,7 @@ def test_round_off_is_clipped_and_unknown_windows_are_gaps_and_both_are_counted(
 
 LABELS = {
     "bound_map": ["$y_{1}$", "$y_{2}$"],
+    "camera_ways": ["to the right (m)", "$y_{1}$", "ahead (m)", "$y_{2}$"],
     "cases": ["time (s)", "$d_{s}$ (1/m)", "$v_{c2}$ (m/s)", "$v_{c3}$ (m/s)"],
     "chatter": ["step of integration (s)", "time (s)", "rms error of $y_{3}$ (1/m)", "step that the solver took (s)"],
     "comparison": ["settling time (s)", "rms error of 1/distance (1/m)"],

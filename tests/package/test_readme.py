@@ -133,7 +133,7 @@ def test_a_registry_shows_readme():
     links = re.findall(r'href="([^"]*)"', shown)
     assert len(links) > 10
     assert all(link.startswith(("https://", "#")) for link in links)
-    assert shown.count("<pre") == 6
+    assert shown.count("<pre") == 7
     assert "<!--" not in shown
 
 

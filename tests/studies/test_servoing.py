@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from refusals import refuses
+from scipy.spatial.transform import Rotation
 
 from percept_obs import ekf, ibo, track
 from percept_obs.labs import observer_lab
@@ -35,6 +36,13 @@ def test_with_the_true_depth_the_image_error_decays_exponentially():
     held = np.log1p(-found.time[1]) / found.time[1]  # e+ = (1 - lambda T) e
     np.testing.assert_allclose(size / size[0], np.exp(held * found.time), rtol=0.02)
     assert found.overshoot[0] == 0
+
+
+def test_the_camera_begins_where_its_start_says_and_ends_at_the_goal():
+    shift, turn = np.split(np.array(FAR[0]), 2)
+    centre, way = servoing.GOAL.mean(axis=0), run("true").camera()
+    np.testing.assert_allclose(way[0], centre - Rotation.from_rotvec(turn).inv().apply(centre + shift), atol=1e-12)
+    assert np.linalg.norm(way[-1]) < 0.05 * np.linalg.norm(way[0])
 
 
 @pytest.mark.slow

@@ -173,4 +173,14 @@ MISTAKES = {
             (0, 0, 0),
         ],
     },
+    "17_closing_the_loop": {
+        "error": [
+            "e' = k y3 e / x",  # the sign
+            "e' = -k x e / y3",  # the truth for the belief
+            "e' = -k e",
+            "e' = -k y3 e",
+        ],
+        "half": ["a", "b", "d"],
+        "brisk": [0.5, 1, 1.5, 6],
+    },
 }

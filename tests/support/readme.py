@@ -126,9 +126,9 @@ def with_owner(project, name):
 
 
 def links(address):
-    """The line of links at the top of README.md, or how to have them."""
+    """The line of links in README.md; none without an address."""
     if not address:
-        return "*Once published: `python tests/support/readme.py --owner NAME` adds the links to GitHub and Binder.*"
+        return ""
     shown = f"[Open the course in a browser, on Binder]({binder(address)})", f"[Report a mistake]({address}/issues)"
     return " · ".join(shown)
 
