@@ -29,7 +29,7 @@ SHEET = "application/json"
 
 OF_A_NOTEBOOK = re.compile(
     r"shift(</kbd>)?\s*\+|grey box|\b(run|click into|restart) (\w+ )?(cells?|kernel|check)\b|cell (above|below)|"
-    r"one below it|model_answer|tally\(|place of the dots|dots `\.\.\.`",
+    r"one below it|into a box|model_answer|tally\(|place of the dots|dots `\.\.\.`",
     re.IGNORECASE,
 )
 """What only a notebook can keep; no page says it."""
@@ -46,6 +46,8 @@ SAID_BY_ALL = {
     r"[Cc]hoose before you run the check:": "Choose first:",
     r"Guess, before you run the next cell:": "Guess first:",
     r" Take away a factor 2 in `ray` and run the cell again: it refuses\.": "",
+    r" in `observer_lab\([^`]*`( from `percept_obs\.labs`, or sweep some values in code)?": " in the lab of one point",
+    r" Type `system` or `[^`]*` into a box of your own\.": "",
     r"So far you ran a cell for each check\.": "So far each check was a cell of Python.",
     r",? (Type|Write) it as text, `[^`]*`\.|, as text: `[^`]*`(?=\.)": "",
 }
@@ -124,7 +126,7 @@ def _folded(solution: str, check: nbformat.NotebookNode) -> str:
     reply = "".join("".join(data["text/markdown"]) for data in shown)
     reply = re.sub(r"^✓ ?(Yes, )?", "", reply, flags=re.MULTILINE)
     why = " ".join(re.findall(r"^# (.*)", solution, re.MULTILINE))
-    words, data, kind = [reply, why[:1].upper() + why[1:]], "", KINDS[call.func.id]
+    words, data, kind = [reply, why and f"*Why:* {why}"], "", KINDS[call.func.id]
     if kind == "choice":
         data = f'data-right="{given.value}" data-options="{" ".join(option.arg for option in call.keywords)}"'
         words = words if reply else [f"**{given.value}.**", *words]
