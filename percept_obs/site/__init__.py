@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from percept_obs.exercises import COPIES
-from percept_obs.labs.shared.saved import FIELDS, STARTER, library_of
+from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED
 from percept_obs.site import front_ends, lite, slides
 from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
@@ -158,7 +158,7 @@ def _notebooks(
     _write(source / "notebooks" / "index.md", contents("The course", "Read the notebooks in this order.", stems))
     _write(shown / "index.md", contents("Slides", "The notebooks as slides; the arrow keys turn them.", stems))
     _write(source / "_static" / "labs.js", library_of(states.values()))
-    for script in (STARTER, FIELDS):
+    for script in (STARTER, STARTER.with_name("exercises.js")):
         shutil.copy(script, source / "_static")
 
 

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import ast
 import re
+import tomllib
 from copy import deepcopy
 from dataclasses import replace
+from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 from percept_obs.checking import Review
@@ -27,38 +29,19 @@ if TYPE_CHECKING:
 SHEET = "application/json"
 """Kind of output in which a review, while a notebook runs, leaves what the page judges by."""
 
-OF_A_NOTEBOOK = re.compile(
-    r"shift(</kbd>)?\s*\+|grey box|\b(run|click into|restart) (\w+ )?(cells?|kernel|check)\b|cell (above|below)|"
-    r"one below it|into a box|model_answer|tally\(|place of the dots|dots `\.\.\.`",
-    re.IGNORECASE,
-)
-"""What only a notebook can keep; no page says it."""
-
+WORDS = tomllib.loads((resources.files("percept_obs.site") / "texts/said.toml").read_text("utf-8"))
+OF_A_NOTEBOOK = re.compile(WORDS["of_a_notebook"])
 MARKED = re.compile(r"<!-- notebook -->.*?<!-- page:?(.*?)-->", re.DOTALL)
 """Words of a notebook, and what its page says instead, which a notebook does not show."""
 
-SAID_BY_ALL = {
-    r"Read, then replace the dots .*": "Read, type your answer, and press *Compare*: the model answer unfolds. It may "
-    "be wrong as often as you like. A formula is judged while you type; the gains and numbers of an exercise that "
-    "tunes can be tried only where Python runs.",
-    r" Click into the grey box and press [^:]*:": "",
-    r": it is enough to run the cells one after the other\.": ".",
-    r"[Cc]hoose before you run the check:": "Choose first:",
-    r"Guess, before you run the next cell:": "Guess first:",
-    r" Take away a factor 2 in `ray` and run the cell again: it refuses\.": "",
-    r" in `observer_lab\([^`]*`( from `percept_obs\.labs`, or sweep some values in code)?": " in the lab of one point",
-    r" Type `system` or `[^`]*` into a box of your own\.": "",
-    r"So far you ran a cell for each check\.": "So far each check was a cell of Python.",
-    r",? (Type|Write) it as text, `[^`]*`\.|, as text: `[^`]*`(?=\.)": "",
-}
-"""Patterns of what notebooks say without a mark, and the page's words for it."""
+NEEDED = re.compile(r"^(from percept_obs\.exercises import .*|needs\(.*\))\n*", re.MULTILINE)
+"""Lines of code that only ask for what exercises need."""
 
 FOLDED = """<details class="asked" data-kind="{kind}" {data}><summary>Answer</summary>
 
 {words}
 
 </details>"""
-
 KINDS = {"derive": "formula", "choose": "choice", "reach": "values"}
 """Kinds of fields, by the function that checks the answer."""
 
@@ -82,7 +65,7 @@ def words_of_a_page(text: str) -> str:
     'Look. Move the point.'
     """
     text = MARKED.sub(lambda found: found[1].strip(), text)
-    for pattern, instead in SAID_BY_ALL.items():
+    for pattern, instead in WORDS["instead"].items():
         text = re.sub(pattern, instead, text)
     return text
 
@@ -92,11 +75,9 @@ def on_a_page(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
     from nbformat.v4 import new_markdown_cell
 
     page = deepcopy(notebook)
-    cells, solution = [], ""
-    for cell in page.cells:
+    cells, page.cells, solution = page.cells, [], ""
+    for cell in cells:
         tags = cell.metadata.get("tags", [])
-        if "notebook" in tags:
-            continue
         if cell.cell_type == "markdown":
             cell.source = words_of_a_page(cell.source)
             if "solution" in tags:
@@ -106,48 +87,30 @@ def on_a_page(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
                 cell.source = cell.source.replace("<details>", '<details class="asked" data-kind="words">')
         elif "solution" in tags:
             solution = cell.source
-            continue
-        elif "exercise" in tags and cell.get("id", "").endswith(CHECK):
+        elif cell.get("id", "").endswith(CHECK):
             cell = new_markdown_cell(_folded(solution, cell))
         else:
-            cell.source = _without_checks(cell.source)
-            if not cell.source and not cell.outputs:
-                continue
-        cells.append(cell)
-    page.cells = cells
+            cell.source = NEEDED.sub("", cell.source)
+        if "notebook" not in tags and cell.source and cell.source != solution:
+            page.cells.append(cell)
     return page
 
 
 def _folded(solution: str, check: nbformat.NotebookNode) -> str:
-    """Return the folded answer to an exercise that a notebook checks: why, the answer, and what the check says."""
-    call = ast.parse(check.source).body[-1].value  # type: ignore[attr-defined]
-    given = ast.parse(solution).body[-1].value  # type: ignore[attr-defined]
+    """Return the folded answer to an exercise that a notebook checks: the answer, what the check says, and why."""
+    asked, given = (ast.parse(code).body[-1].value for code in (check.source, solution))  # type: ignore[attr-defined]
     shown = [output["data"] for output in check.outputs if "text/markdown" in output.get("data", {})][-1:]
     reply = "".join("".join(data["text/markdown"]) for data in shown)
     reply = re.sub(r"^✓ ?(Yes, )?", "", reply, flags=re.MULTILINE)
     why = " ".join(re.findall(r"^# (.*)", solution, re.MULTILINE))
-    words, data, kind = [reply, why and f"*Why:* {why}"], "", KINDS[call.func.id]
+    words, data, kind = [reply, why and f"*Why:* {why}"], "", KINDS[asked.func.id]
     if kind == "choice":
-        data = f'data-right="{given.value}" data-options="{" ".join(option.arg for option in call.keywords)}"'
-        words = words if reply else [f"**{given.value}.**", *words]
+        data = f'data-right="{given.value}" data-options="{" ".join(option.arg for option in asked.keywords)}"'
+        words[0] = reply or f"**{given.value}.**"
     elif kind == "formula":
-        lines = [line.value for line in getattr(given, "elts", [given])]
-        words = ["\n".join(("```", *lines, "```")), *words]
+        words.insert(0, "\n".join(("```", *(line.value for line in getattr(given, "elts", [given])), "```")))
         if sheet := shown and shown[0].get(SHEET):
-            words = [f'<script type="application/json">{inside(sheet)}</script>', *words]
+            words.insert(0, f'<script type="application/json">{inside(sheet)}</script>')
     else:
-        code = re.sub(r"^#.*\n", "", solution, flags=re.MULTILINE)
-        words = [f"```python\n{code}\n```", *words]
+        words.insert(0, "```python\n{}\n```".format(re.sub(r"^#.*\n", "", solution, flags=re.MULTILINE)))
     return FOLDED.format(kind=kind, data=data, words="\n\n".join(filter(None, words)))
-
-
-def _without_checks(code: str) -> str:
-    """Return code without the lines that only ask for what an exercise needs."""
-    if "percept_obs.exercises" not in code:
-        return code
-    lines = code.splitlines()
-    for statement in reversed(ast.parse(code).body):
-        text = ast.unparse(statement)
-        if text.startswith(("from percept_obs.exercises", "needs(")):
-            del lines[statement.lineno - 1 : statement.end_lineno]
-    return "\n".join(lines).strip()

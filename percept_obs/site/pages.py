@@ -70,13 +70,9 @@ def ledger_pages(judged: Collection[str]) -> Pages:
 
 
 def verdicts() -> str:
-    """Return a table of how many equations of each paper hold, and of all.
-
-    >>> print(verdicts().splitlines()[0])
-    | paper | ✓ holds | ✎ misprint | ✗ false as stated | ? depends | · not checkable | equations |
-    """
+    """Return a table of how many equations of each paper hold, and of all."""
     counted = {ledger.paper: Counter(entry.expected for entry in ledger.entries) for ledger in NAMED.values()}
-    counted["**all**"] = Counter(entry.expected for ledger in NAMED.values() for entry in ledger.entries)
+    counted["**all**"] = sum(counted.values(), Counter[Verdict]())
     head = ["paper", *(f"{mark} {verdict}" for verdict, mark in MARK.items()), "equations"]
     rows = [(paper, *(found[verdict] or "" for verdict in MARK), found.total()) for paper, found in counted.items()]
     table = (head, ["---", *["--:"] * (len(head) - 1)], *rows)

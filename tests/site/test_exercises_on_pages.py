@@ -5,11 +5,11 @@ import re
 
 import nbformat
 import pytest
+from lab_settings import FRONT
 from places import NOTEBOOKS
 
 from percept_obs import PerspectiveSystem, affine, check, pinhole
 from percept_obs.exercises.models import answers_in, notebooks
-from percept_obs.labs.shared.saved import FIELDS
 from percept_obs.site import _texts
 from percept_obs.site.exercises import FOLDED, OF_A_NOTEBOOK, SHEET, inside, on_a_page, sheet_of, words_of_a_page
 from percept_obs.site.slides import slides_of
@@ -36,7 +36,7 @@ def test_every_answer_is_on_a_page():
             assert words_of_a_page(answer).removeprefix("**A model answer.** ") in page
         asked += len(answers)
         folded += page.count('<details class="asked" data-kind="words"')
-        checked += len(re.findall('<details class="asked" data-kind="(formula|choice|values)"', page))
+        checked += len(re.findall('<details class="asked" data-kind="(?:formula|choice|values)"', page))
     solutions = [
         cell
         for notebook in notebooks().values()
@@ -95,7 +95,7 @@ def exercises(browser, tmp_path):
         ("formula", "", f"{sheet}\n{ANSWER}"),
     ]
     shown = "".join(FOLDED.format(kind=kind, data=data, words=words) for kind, data, words in kinds)
-    script = FIELDS.read_text("utf-8")
+    script = (FRONT / "exercises.js").read_text("utf-8")
     (tmp_path / "page.html").write_text(
         f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises</title><main>{shown}</main>'
         f"<script>{script}</script>",

@@ -15,9 +15,6 @@ from percept_obs.labs.shared.printed import FRONT
 STARTER = FRONT / "alone.js"
 """Script that turns the places of a page into labs."""
 
-FIELDS = FRONT / "exercises.js"
-"""Script that gives a page's exercises fields, and judges formulas as the desk does."""
-
 SHOWN = ("kind", "view", "model", "settings", "written", "frames", "sheets")
 """Traits of a lab that its page holds, besides its texts."""
 
