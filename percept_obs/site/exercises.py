@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 from percept_obs.checking import Review
 from percept_obs.checking.lines import VALUE
-from percept_obs.exercises.copies import CHECK
 from percept_obs.exercises.models import answers_in
 from percept_obs.labs.desk.answers import SAID
 from percept_obs.labs.desk.sheets import Sheet
@@ -87,7 +86,7 @@ def on_a_page(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
                 cell.source = cell.source.replace("<details>", '<details class="asked" data-kind="words">')
         elif "solution" in tags:
             solution = cell.source
-        elif cell.get("id", "").endswith(CHECK):
+        elif "exercise" in tags:
             cell = new_markdown_cell(_folded(solution, cell))
         else:
             cell.source = NEEDED.sub("", cell.source)
@@ -108,7 +107,8 @@ def _folded(solution: str, check: nbformat.NotebookNode) -> str:
         data = f'data-right="{given.value}" data-options="{" ".join(option.arg for option in asked.keywords)}"'
         words[0] = reply or f"**{given.value}.**"
     elif kind == "formula":
-        words.insert(0, "\n".join(("```", *(line.value for line in getattr(given, "elts", [given])), "```")))
+        words[0] = "\n\n".join(re.findall(r"\$\$.*?\$\$", reply, re.DOTALL))
+        words.insert(0, "\n".join(("```text", *(line.value for line in getattr(given, "elts", [given])), "```")))
         if sheet := shown and shown[0].get(SHEET):
             words.insert(0, f'<script type="application/json">{inside(sheet)}</script>')
     else:

@@ -49,7 +49,7 @@ def page() -> str:
     """
     untried = [name for name, cells in FRONT_ENDS.items() if {*cells.values()} <= {*RULES}]
     rows = ((name, "nobody" if name in untried else "a program", *cells.values()) for name, cells in FRONT_ENDS.items())
-    table = [("", "tried by", *TRIED), ["---"] * (2 + len(TRIED)), *rows]
+    table = [("front end", "tried by", *TRIED), ["---"] * (2 + len(TRIED)), *rows]
     lines = [
         *("# Where the labs work", ""),
         f"A program tries the labs in browsers, as a hand would; nobody has tried them in {', '.join(untried)}. There "

@@ -60,7 +60,7 @@ def test_a_page_and_its_slides_say_and_show_nothing_that_only_a_notebook_can_kee
 
 def test_no_text_says_what_only_a_notebook_can_keep():
     for path, text in _texts(exam=True):
-        assert path.endswith((".css", ".html")) or not OF_A_NOTEBOOK.search(text), path
+        assert path.endswith((".css", ".toml")) or not OF_A_NOTEBOOK.search(text), path
 
 
 @pytest.mark.parametrize(

@@ -396,7 +396,10 @@ def test_a_text_in_the_settings_cannot_end_the_script():
     assert "</script><script>" not in place_of(state)
 
 
-@pytest.mark.parametrize("wide", ["<pre", '<table class="ledger"', '<table border="1" class="dataframe"'])
+@pytest.mark.parametrize(
+    "wide",
+    ["<pre", '<table class="ledger"', '<table border="1" class="dataframe"', '<div class="table-wrapper docutils"'],
+)
 def test_what_may_be_wider_than_the_page_is_scrolled_by_keys(wide):
     context = {"body": f"{wide}>"}
     _let_keys_scroll(None, "", "", context, None)

@@ -39,7 +39,7 @@ function linesOf(printed, onchange, compare) {
   const keys = judge.keys("");
   let resting = 0;
   const lines = judge.lines.map(({ label }) => {
-    const left = label ? [formula("span", `${label}<mo>=</mo>`)] : [LABELS.formula];
+    const left = [LABELS.formula, label ? formula("span", `<mo>:</mo>${label}<mo>=</mo>`) : ""];
     const parts = fieldOf(left, 1, () => changed(false), compare);
     const shown = element("p", { class: "read" });
     const found = element("p", { class: "found", role: "status" });
