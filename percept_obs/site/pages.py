@@ -71,7 +71,10 @@ def ledger_pages(judged: Collection[str]) -> Pages:
 
 def verdicts() -> str:
     """Return a table of how many equations of each paper hold, and of all."""
-    counted = {ledger.paper: Counter(entry.expected for entry in ledger.entries) for ledger in NAMED.values()}
+    counted = {
+        ledger.paper.partition(" (")[0]: Counter(entry.expected for entry in ledger.entries)
+        for ledger in NAMED.values()
+    }
     counted["**all**"] = sum(counted.values(), Counter[Verdict]())
     head = ["paper", *(f"{mark} {verdict}" for verdict, mark in MARK.items()), "equations"]
     rows = [(paper, *(found[verdict] or "" for verdict in MARK), found.total()) for paper, found in counted.items()]
