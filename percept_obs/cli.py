@@ -94,13 +94,12 @@ def site(options: argparse.Namespace) -> int:
     from percept_obs.validation import needed
 
     _refuse_a_file(options.directory)
-    copies = {name: COPIES[options.readers](notebook) for name, notebook in notebooks().items()}
     try:
         needed("site", *NEEDS)
         if options.python:
             needed("lite", *lite.NEEDS)
         exam, run = options.readers == "teachers", () if options.without_running else None
-        build(options.directory, copies, exam=exam, address=options.address, python=options.python, run=run)
+        build(options.directory, notebooks(), exam=exam, address=options.address, python=options.python, run=run)
     except (SiteFault, OSError, ModuleNotFoundError) as error:
         raise _Mistake(str(error), 1) from None
     return 0

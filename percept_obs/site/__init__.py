@@ -14,10 +14,12 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
+from percept_obs.exercises import COPIES
 from percept_obs.labs.shared.saved import STARTER, library_of
 from percept_obs.papers import NAMED
 from percept_obs.site import front_ends, lite, slides
 from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
+from percept_obs.site.exercises import on_a_page
 from percept_obs.site.faults import faults_of
 from percept_obs.site.front import first_lab, front
 from percept_obs.site.named import named
@@ -75,9 +77,10 @@ def build(
     target : path
         Folder of the site; pages of an earlier one are replaced.
     notebooks : mapping of str to notebook
-        Files as they are read, by their names.
+        Files with their solutions and answers, by their names.
     exam : bool
-        Whether the exam's questions, with their solutions, have a page: for teachers.
+        Whether the site is for teachers: the exam's questions, with their solutions, have a page, and answers are
+        unfolded at once, without a field for one's own.
     address : str, optional
         Where the site will stand, ``"https://example.org/course/"``; with it pages say their own address, and there is
         a list of them all for search engines.  If it ends with a version, as ``".../course/1.2/"``, pages lead to the
@@ -116,7 +119,7 @@ def build(
         (source / "_static" / CARD).write_bytes(card())
         with resources.as_file(TEXTS / "pictures") as pictures:
             shutil.copytree(pictures, source / "pictures")
-        context = {"versions": above_versions(address), "python": lite.PLACES if python else {}}
+        context = {"versions": above_versions(address), "python": lite.PLACES if python else {}, "fields": not exam}
         settings = {"html_baseurl": address, "html_context": context}
         _generate(source, target, {"myst_substitutions": names, **settings}, parallel=PROCESSES)
         slides.prepare(shown, (TEXTS / "slides.css").read_text("utf-8"))
@@ -127,7 +130,8 @@ def build(
         write_sitemap(target, address)
     if python:
         print("building JupyterLite")
-        lite.write_lite(target, notebooks)
+        copies = COPIES["teachers" if exam else "students"]
+        lite.write_lite(target, {name: copies(notebook) for name, notebook in notebooks.items()})
     print(f"wrote {target / 'index.html'}")
 
 
@@ -147,13 +151,15 @@ def _notebooks(
     for name, notebook in chain(run_all(wanted, PROCESSES), kept):
         print(f"{'ran' if name in run else 'wrote'} {name}")
         states |= {state["texts"]: state for state in labs_of(notebook).values()}
+        notebook = on_a_page(notebook)
         _write(shown / name, nbformat.writes(without_widgets(slides.slides_of(notebook), SCRIPTS)))
         _write(source / "notebooks" / name, nbformat.writes(without_widgets(notebook, SCRIPTS)))
     stems = [name.removesuffix(".ipynb") for name in notebooks]
     _write(source / "notebooks" / "index.md", contents("The course", "Read the notebooks in this order.", stems))
     _write(shown / "index.md", contents("Slides", "The notebooks as slides; the arrow keys turn them.", stems))
     _write(source / "_static" / "labs.js", library_of(states.values()))
-    shutil.copy(STARTER, source / "_static")
+    for script in (STARTER, STARTER.with_name("exercises.js")):
+        shutil.copy(script, source / "_static")
 
 
 def _texts(exam: bool) -> Pages:

@@ -11,10 +11,11 @@ from posixpath import join, normpath
 from typing import Any
 
 from percept_obs.exercises import stub
+from percept_obs.site.exercises import OF_A_NOTEBOOK, words_of_a_page
 from percept_obs.site.front import STEPS
 from percept_obs.site.pages import MODULES, slug
 
-TAGS = frozenset({"slide", "exercise", "hint", "solution"})
+TAGS = frozenset({"slide", "exercise", "hint", "solution", "notebook"})
 """Tags of cells; the site and the copies for students know no others."""
 
 
@@ -32,6 +33,7 @@ def faults_of(
     for name, notebook in notebooks.items():
         cells = [(cell, "".join(cell["source"]), {*cell["metadata"].get("tags", ())}) for cell in notebook["cells"]]
         words = "\n\n".join(text for cell, text, _ in cells if cell["cell_type"] == "markdown")
+        words = words_of_a_page(words)
         for fault in (*_in_cells(cells, name in run), *_in_words(words, "notebooks", pages)):
             yield f"notebooks/{name}: {fault}"
         if not any(name[:2] in numbers for numbers in STEPS.values()):
@@ -72,6 +74,8 @@ def _in_words(text: str, folder: str, pages: Collection[str]) -> Iterator[str]:
     levels = [len(marks) for marks in re.findall(r"^(#+) ", text, re.MULTILINE)]
     if levels.count(1) != 1 or any(later > level + 1 for level, later in pairwise(levels)):
         yield f"its headings have the levels {levels}; a page has one title, and no level is left out"
+    for said in OF_A_NOTEBOOK.finditer(text):
+        yield f"a page cannot keep “{said[0]}”; mark it: <!-- notebook -->...<!-- page: what a page can do -->"
     for target in re.findall(r"\]\((?!\w+:|/ledger/)([^)\s#]+\.(?:md|ipynb|rst))\b", text):
         if normpath(join("/", folder, target))[1:] not in pages:
             yield f"a link leads to {target}, which is not there"

@@ -63,8 +63,7 @@ document.querySelectorAll(".front-question button").forEach((button, k) => {
 });
 </script>"""
 
-PAGES = """notebooks/index tour gallery own guide use_labs labs front_ends observers ledger/index reference/index
-sources review speed"""
+PAGES = """notebooks/index how tour use_labs labs observers ledger/index reference/index guide about"""
 """Pages in the order of the contents."""
 
 HEADER = "---\nhide-toc: true\n---\n\n# One picture never tells how far. Move, and it does."

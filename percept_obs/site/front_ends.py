@@ -36,8 +36,7 @@ FRONT_ENDS = {
     **dict.fromkeys(INSTALL, _IN_BROWSERS),
     "saved file": _IN_BROWSERS | {"two labs": "by rule 2"},
     "this site": dict.fromkeys(TRIED, "Chromium"),
-    "VS Code": dict.fromkeys(TRIED, "by rule 1"),
-    "Colab": dict.fromkeys(TRIED, "by rule 1"),
+    **{name: dict.fromkeys(TRIED, "by rule 1") for name in ("JupyterLite", "VS Code", "Colab")},
 }
 """For each front end, how each of `TRIED` is known to work: by a test in browsers, or by a rule."""
 
@@ -46,12 +45,15 @@ def page() -> str:
     """Return the table and its explanation as Markdown.
 
     >>> print(next(line for line in page().splitlines() if "this site" in line))
-    | this site | Chromium | Chromium | Chromium | Chromium | Chromium | Chromium |
+    | this site | a program | Chromium | Chromium | Chromium | Chromium | Chromium | Chromium |
     """
-    table = [("", *TRIED), ["---"] * (1 + len(TRIED)), *((name, *cells.values()) for name, cells in FRONT_ENDS.items())]
+    untried = [name for name, cells in FRONT_ENDS.items() if {*cells.values()} <= {*RULES}]
+    rows = ((name, "nobody" if name in untried else "a program", *cells.values()) for name, cells in FRONT_ENDS.items())
+    table = [("front end", "tried by", *TRIED), ["---"] * (2 + len(TRIED)), *rows]
     lines = [
         *("# Where the labs work", ""),
-        *("Each cell says how it is known: by a test in a browser, or by a rule.", ""),
+        f"A program tries the labs in browsers, as a hand would; nobody has tried them in {', '.join(untried)}. There "
+        "a rule says why they should work. If you try one, tell us what you saw.\n",
         *(f"| {' | '.join(row)} |" for row in table),
         *("", "What is tried:", ""),
         *(f"- *{name}*: {action}." for name, action in TRIED.items()),

@@ -14,8 +14,10 @@ from html import escape
 from operator import getitem
 from typing import TYPE_CHECKING, Any
 
+from percept_obs.checking import Review
 from percept_obs.figures.base import Figure
 from percept_obs.labs.shared.saved import ENDED, SHOWN, place_of
+from percept_obs.site.exercises import SHEET, sheet_of
 from percept_obs.site.extension import displayed
 
 if TYPE_CHECKING:
@@ -41,10 +43,12 @@ PREPARE = "from percept_obs.site.notebooks import draw_for_pages\ndraw_for_pages
 
 
 def draw_for_pages() -> None:
-    """Show figures of the running kernel as drawings in the page's colours."""
+    """Show figures of the running kernel as drawings in the page's colours, and reviews with what a page judges by."""
     from IPython import get_ipython
 
-    get_ipython().display_formatter.formatters["text/html"].for_type(Figure, drawing)
+    formatters = get_ipython().display_formatter.formatters
+    formatters["text/html"].for_type(Figure, drawing)
+    formatters[SHEET].for_type(Review, sheet_of)
 
 
 def drawing(figure: Figure) -> str:

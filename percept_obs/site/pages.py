@@ -63,10 +63,23 @@ def contents(title: str, intro: str, entries: Iterable[str]) -> str:
 def ledger_pages(judged: Collection[str]) -> Pages:
     """Yield a page for each ledger and for each of its equations; of those not judged, what is recorded."""
     judge(tuple(NAMED[name] for name in judged))
-    intro = "What the papers print, equation by equation, and what a computation says of it."
+    intro = f"What the papers print, equation by equation, and what a computation says of it.\n\n{verdicts()}"
     yield "ledger/index.md", contents("The papers, equation by equation", intro, [f"{slug(n)}/index" for n in NAMED])
     for name, ledger in NAMED.items():
         yield from _ledger(name, ledger, name in judged)
+
+
+def verdicts() -> str:
+    """Return a table of how many equations of each paper hold, and of all."""
+    counted = {
+        ledger.paper.partition(" (")[0]: Counter(entry.expected for entry in ledger.entries)
+        for ledger in NAMED.values()
+    }
+    counted["**all**"] = sum(counted.values(), Counter[Verdict]())
+    head = ["paper", *(f"{mark} {verdict}" for verdict, mark in MARK.items()), "equations"]
+    rows = [(paper, *(found[verdict] or "" for verdict in MARK), found.total()) for paper, found in counted.items()]
+    table = (head, ["---", *["--:"] * (len(head) - 1)], *rows)
+    return "\n".join(f"| {' | '.join(map(str, row))} |" for row in table)
 
 
 def slug(text: str) -> str:

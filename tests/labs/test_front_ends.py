@@ -112,7 +112,12 @@ def test_the_table_says_what_is_tried():
     assert {name for name, ways in known.items() if ways - set(RULES)} == {*OPEN, "this site"}
     assert set(RULES) <= set().union(*known.values())
     assert list(TRIALS) == list(TRIED)
-    assert {row.count("|") for row in page().splitlines() if row.startswith("|")} == {len(TRIED) + 2}
+    assert {row.count("|") for row in page().splitlines() if row.startswith("|")} == {len(TRIED) + 3}
+    assert {row.split(" | ")[0][2:] for row in page().splitlines() if " | nobody | " in row} == {
+        "JupyterLite",
+        "VS Code",
+        "Colab",
+    }
 
 
 def test_the_bundle_keeps_the_rules():

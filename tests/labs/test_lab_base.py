@@ -29,10 +29,11 @@ def npm(node):
 
 @pytest.mark.node
 @pytest.mark.slow
-def test_the_bundle_is_the_build_of_the_sources(npm, tmp_path):
-    npm("build", "--", f"--outfile={tmp_path / 'lab.js'}").check_returncode()
-    built, committed = (hashlib.sha256((folder / "lab.js").read_bytes()).hexdigest() for folder in (tmp_path, FRONT))
-    assert built == committed, "run npm ci && npm run build in percept_obs/labs/front"
+@pytest.mark.parametrize(("script", "name"), [("build", "lab.js"), ("build:exercises", "exercises.js")])
+def test_a_bundle_is_the_build_of_the_sources(npm, tmp_path, script, name):
+    npm(script, "--", f"--outfile={tmp_path / name}").check_returncode()
+    built, committed = (hashlib.sha256((folder / name).read_bytes()).hexdigest() for folder in (tmp_path, FRONT))
+    assert built == committed, f"run npm ci && npm run {script} in percept_obs/labs/front"
 
 
 @pytest.mark.node

@@ -99,6 +99,9 @@ def test_the_page_of_a_notebook_leads_to_it_and_says_where_python_comes_from(pag
         assert "come from public servers (cdn.jsdelivr.net, pypi.org)" in shown
     else:
         assert shown == without
+    fields = template.render(given, fields=True)
+    assert ("exercises.js" in fields) is page.startswith("notebooks/0")
+    assert "exercises.js" not in without
 
 
 def test_what_the_notebooks_import_is_installed():

@@ -5,6 +5,7 @@ import re
 import subprocess
 import warnings
 from functools import cache
+from html import unescape
 from html.parser import HTMLParser
 from os.path import normpath
 from pathlib import Path
@@ -22,11 +23,11 @@ from widths import WIDTHS, assert_fits
 
 import percept_obs
 from percept_obs import PerspectiveSystem, affine, cli, ibo, pinhole, site
-from percept_obs.exercises import COPIES
 from percept_obs.exercises.models import notebooks
 from percept_obs.figures.base import Figure
 from percept_obs.labs.shared.saved import place_of
 from percept_obs.papers import NAMED
+from percept_obs.site.exercises import OF_A_NOTEBOOK
 from percept_obs.site.extension import _let_keys_scroll, displayed, mathml
 from percept_obs.site.front_ends import TRIED
 from percept_obs.site.named import named
@@ -56,7 +57,7 @@ class Links(HTMLParser):
 def pages(tmp_path_factory, ran):
     """The whole site: the site itself runs the first notebook, and takes the others from the tests of notebooks."""
     target = tmp_path_factory.mktemp("site")
-    copies = {name: COPIES["teachers"](notebook) for name, notebook in notebooks().items()}
+    copies = notebooks()
     _add_a_second_lab(copies[NOTEBOOK])
     run_all = site.run_all
 
@@ -73,6 +74,9 @@ def pages(tmp_path_factory, ran):
         patch.setattr(site, "run_all", taken)
         patch.setattr(site.lite, "write_lite", _write_no_lite)  # tests of its own build it
         site.build(target, copies, exam=True, address=ADDRESS, python=True)
+    for path in (target / "notebooks").glob("[0-9]*.html"):  # as students get them: only teachers get the exam
+        text = path.read_text("utf-8")
+        path.write_text(text.replace("</body>", '<script src="../_static/exercises.js"></script></body>'), "utf-8")
     return target
 
 
@@ -177,6 +181,17 @@ def test_a_page_fits_its_window_and_all_that_can_be_pressed_is_reached(pages, br
         looked += assert_fits(page, path)
     print(f"{len(looked_at(pages))} of {len(written(pages))} pages, {len(WIDTHS)} widths: {looked} controls reached")
     page.close()
+
+
+@pytest.mark.slow
+def test_no_page_says_what_only_a_notebook_can_keep(pages):
+    for path in written(pages):
+        text = re.sub(r"<(script|style).*?</\1>", "", path.read_text("utf-8"), flags=re.DOTALL)
+        words = unescape(re.sub(r"<(?!/?kbd)[^>]*>", "", text))
+        if path.relative_to(pages).parts[0] != "reference":  # it is of Python
+            assert not OF_A_NOTEBOOK.findall(words), path
+        if path.parent.name == "notebooks":
+            assert not re.search(r"percept_obs\.exercises|\b(tally|needs|derive|choose|reach)\(", words), path
 
 
 @pytest.mark.slow
@@ -381,7 +396,10 @@ def test_a_text_in_the_settings_cannot_end_the_script():
     assert "</script><script>" not in place_of(state)
 
 
-@pytest.mark.parametrize("wide", ["<pre", '<table class="ledger"', '<table border="1" class="dataframe"'])
+@pytest.mark.parametrize(
+    "wide",
+    ["<pre", '<table class="ledger"', '<table border="1" class="dataframe"', '<div class="table-wrapper docutils"'],
+)
 def test_what_may_be_wider_than_the_page_is_scrolled_by_keys(wide):
     context = {"body": f"{wide}>"}
     _let_keys_scroll(None, "", "", context, None)

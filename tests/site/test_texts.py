@@ -1,11 +1,13 @@
 """What texts say holds: their examples run, and the files, notebooks, sections and equations that they name exist."""
 
 import ast
+import csv
 import doctest
 import importlib
 import inspect
 import json
 import re
+import shlex
 from enum import Enum
 from functools import cached_property
 from types import FunctionType
@@ -14,6 +16,7 @@ import pytest
 from notebook_exercises import code as code_of
 from places import NOTEBOOKS
 
+from percept_obs import cli
 from percept_obs.observers.family import Family
 from percept_obs.site import TEXTS
 from percept_obs.site.named import named
@@ -44,14 +47,49 @@ def test_the_exam_s_solutions_compute_what_they_say():
     assert all(">>> " in question for question in questions)
 
 
+def ran(text):
+    """Names that the lines of a text leave."""
+    names = {}
+    for block in re.findall(r"```python\n(.*?)```", ON_THE_SITE[text], re.DOTALL):
+        exec(compile(block, f"<{text}>", "exec"), names)
+    return names
+
+
 @pytest.mark.slow
 def test_the_lines_of_the_tour_run_and_give_what_they_say():
-    names = {}
-    for block in re.findall(r"```python\n(.*?)```", ON_THE_SITE["tour.md"], re.DOTALL):
-        exec(compile(block, "<tour.md>", "exec"), names)
+    names = ran("tour.md")
     assert names["review"].right is False
     assert "b3" in str(names["review"].hint(2))
     assert "10 %" in str(names["run"].verdict())
+
+
+@pytest.mark.slow
+def test_an_observer_of_one_s_own_runs_as_its_page_says():
+    names = ran("own_observer.md")
+    seconds = [names[run].settling_time() for run in ("mine", "theirs")]
+    assert "{:.2f} s here, the identifier-based observer {:.2f} s".format(*seconds) in ON_THE_SITE["own_observer.md"]
+
+
+@pytest.mark.slow
+def test_a_motion_of_one_s_own_runs_as_its_page_says(capsys):
+    names = ran("own_motion.md")
+    varies = [names[motion].constants is None for motion in ("steady", "swaying", "carried")]
+    assert varies == [False, True, True]
+    assert "converged" in capsys.readouterr().out
+    assert 0 < names["least"][-1] < 0.1
+
+
+@pytest.mark.slow
+def test_the_commands_of_the_page_on_marks_give_a_table(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    roster = re.search(r"```\n(student.*?)```", ON_THE_SITE["marks.md"], re.DOTALL)[1]
+    (tmp_path / "roster.csv").write_text(roster, "utf-8")
+    for command in re.findall(r"^    percept-obs (.*)", ON_THE_SITE["marks.md"], re.MULTILINE):
+        assert cli.main(shlex.split(command)) == 0
+    with open("marks.csv", encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["student"] for row in rows] == ["Ada Lovelace", "Emmy Noether"]
+    assert [row["copy of"] for row in rows] == ["Ada Lovelace", "Emmy Noether"], rows[0]
 
 
 def test_every_notebook_stands_in_the_lecture_map():

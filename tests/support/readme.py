@@ -95,6 +95,16 @@ LABS = {
 }
 """Labs of the gallery, with what their pictures show."""
 
+CAPTIONS = {
+    "observer_lab": "The ring is what the observer believes; once it is right both arrows agree (notebook 00).",
+    "structure_lab": "Three cars of three sizes make one film: no image tells them apart (notebook 05).",
+    "points_lab": "Three marks of a body, and a camera that goes around it (notebook 06).",
+    "observers_at_their_limit": "Two observers, and the grey line that no unbiased one stays below (notebook 12).",
+    "map_of_the_bound": "Yellow is where distance is had best, far from the focus of expansion (notebook 12).",
+    "three_surfaces": "A plane, a lens and a sphere with equal pixels: which tells more? (notebook 10)",
+}
+"""What to look for in each picture of the gallery."""
+
 PLAYS = f"{LABS['observer_lab'][1]} The picture plays these 4 s again and again."
 WITHOUT_CONTROLS = ".percept-lab button { visibility: hidden } .percept-lab :is(.handy, .strip) { display: none }"
 """A picture cannot be pressed, so it shows nothing to press."""
@@ -186,7 +196,8 @@ def observer_table():
 
 def gallery(texts):
     """Pictures by their names, with what they show."""
-    return "\n\n".join(f"![{text}]({PICTURES.name}/{name}.png)" for name, text in texts.items())
+    shown = (f"![{text}]({PICTURES.name}/{name}.png)\n\n*{CAPTIONS[name]}*" for name, text in texts.items())
+    return "\n\n".join(shown)
 
 
 def with_part(text, name, part):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import product
 
 import sympy as sp
@@ -59,20 +59,25 @@ def sheet_for_the_page(system: PerspectiveSystem, outputs: tuple[str, ...], obse
         sheet = sheet_of(system, outputs, observer, part)
     except ValueError as error:
         return title | {"problem": str(error)}
+    return title | printed(sheet, numbers_of(system) if len(sheet.image) == 2 else {})
+
+
+def printed(sheet: Sheet, numbers: Mapping[sp.Symbol, float]) -> Texts:
+    """Return a sheet that can be filled in as plain data, with the numbers at which motions are drawn."""
     goal = sheet.goal
     letters, _ = goal.known
     symbols = {name: getattr(each, "letter", each) for name, each in letters.items()}
     meant = {name: each.written_out for name, each in letters.items() if hasattr(each, "letter")}
     meant |= {key(symbol.name): value for symbol, value in goal.relations.items()}
     changes = [(c.words, {key(s.name): _text(e) for s, e in c.changes.items()}) for c in goal.conventions]
-    return title | {
+    return {
         "given": sheet.given,
         "known": sorted(symbols),
         "markup": {name: markup(symbol) for name, symbol in symbols.items()},
         "meant": {name: _text(value) for name, value in meant.items()},
         "steps": [_step(sheet, number) for number in range(1, len(sheet.derivation) + 1)],
         "image": sheet.image,
-        "numbers": {key(s.name): number for s, number in numbers_of(system).items()} if len(sheet.image) == 2 else {},
+        "numbers": {key(s.name): number for s, number in numbers.items()},
         "conventions": [{"words": words, "changes": each} for words, each in changes],
     }
 

@@ -78,9 +78,12 @@ def page_of(state: Mapping[str, Any], title: str) -> str:
 def place_of(state: Mapping[str, Any]) -> str:
     """HTML of a lab's place in a page, with its data."""
     data = {name: state[name] for name in SHOWN if name in state} | {"texts": _name_of(state["texts"])}
-    # The end of a script would end it within a text, too.
-    inside = json.dumps(data, allow_nan=False, default=_as_base64, separators=(",", ":")).replace("<", "\\u003c")
-    return f'<div data-percept-obs><script type="application/json">{inside}</script></div>'
+    return f'<div data-percept-obs><script type="application/json">{inside(data)}</script></div>'
+
+
+def inside(data: Mapping[str, Any]) -> str:
+    """Data as JSON within a script, which no text in it ends."""
+    return json.dumps(data, allow_nan=False, default=_as_base64, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def library_of(states: Iterable[Mapping[str, Any]]) -> str:
