@@ -43,7 +43,6 @@ SETTINGS: dict[str, Any] = {
     "html_static_path": ["_static"],
     "templates_path": ["_templates"],
     "html_css_files": ["look.css"],
-    "html_additional_pages": {"index": "article.html"},
     "html_copy_source": False,
     "html_show_sphinx": False,
     "html_show_copyright": False,
@@ -119,7 +118,8 @@ def build(
         with resources.as_file(TEXTS / "pictures") as pictures:
             shutil.copytree(pictures, source / "pictures")
         context = {"versions": above_versions(address), "python": lite.PLACES if python else {}, "article": article}
-        settings = {"html_baseurl": address, "html_context": context}
+        in_place = {"index": "article.html"}
+        settings = {"html_baseurl": address, "html_context": context, "html_additional_pages": in_place}
         _generate(source, target, {"myst_substitutions": names, **settings}, parallel=PROCESSES)
         slides.prepare(shown, (TEXTS / "slides.css").read_text("utf-8"))
         extensions = [*SETTINGS["extensions"], "sphinx_revealjs"]

@@ -102,6 +102,7 @@
       this.scene = scene;
       document.body.dataset.scene = scene.name;
       put(this.lab, scene, structuredClone(scene.before));
+      this.showHand(scene, scene.before);
     }
 
     /** Nobody waits for a run that is not looked at: its answer is told. */
@@ -120,21 +121,30 @@
         this.screen.handles.find((handle) => handle.node.dataset.control === hand).node.focus({ focusVisible: true });
       });
       const slider = node.querySelector(".hand input");
-      slider?.addEventListener("input", () => {
-        const { text, changes } = hand.stops[slider.value];
-        node.querySelector("output").textContent = text;
-        slider.setAttribute("aria-valuetext", text);
-        this.move(scene, changes);
-      });
+      slider?.addEventListener("input", () => this.move(scene, hand.stops[slider.value].changes));
       slider?.addEventListener("change", () => this.release(scene));
-      const choices = [...node.querySelectorAll(".choices button")];
-      choices.forEach((button, k) =>
+      node.querySelectorAll(".choices button").forEach((button, k) =>
         button.addEventListener("click", () => {
-          for (const other of choices) other.setAttribute("aria-pressed", String(other === button));
           this.move(scene, hand.stops[k].changes);
           this.release(scene);
         }),
       );
+    }
+
+    /** Bring a scene's slider or choices to settings. */
+    showHand({ node, before, hand: { stops = [] } }, settings) {
+      const plain = (given) => JSON.stringify({ ...given, kept: null });
+      const at = stops.findIndex(({ changes }) => plain(merged(before, changes)) === plain(settings));
+      const slider = node.querySelector(".hand input");
+      node.querySelectorAll(".choices button").forEach((button, k) => {
+        button.setAttribute("aria-pressed", String(k === at));
+      });
+      if (!slider || at < 0) return;
+      const { text } = stops[at];
+      // Under a hand it stays where it is.
+      if (Number(slider.value) !== at) slider.value = at;
+      slider.setAttribute("aria-valuetext", text);
+      node.querySelector("output").textContent = text;
     }
 
     /** The hand changes what its scene is about, and nothing else. */
@@ -142,7 +152,9 @@
       this.enter(scene);
       this.settle(scene);
       this.screen.touch();
-      this.lab.change(merged(scene.before, changes));
+      const settings = merged(scene.before, changes);
+      this.lab.change(settings);
+      this.showHand(scene, settings);
     }
 
     /** Let go of it: where the run is not seen from its end, it plays. */
@@ -166,6 +178,7 @@
         questions.ask(scene.name);
         questions.answer(k);
       }
+      this.showHand(scene, scene.after);
       buttons[k].focus({ preventScroll: true });
     }
 
