@@ -19,7 +19,7 @@ from percept_obs.papers import NAMED
 from percept_obs.site import front_ends, lite, slides
 from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
 from percept_obs.site.faults import faults_of
-from percept_obs.site.front import front, tree
+from percept_obs.site.front import PLAYER, front, tree
 from percept_obs.site.named import named
 from percept_obs.site.notebooks import SiteFault, labs_of, not_run, run_all, without_widgets
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
@@ -154,7 +154,8 @@ def _notebooks(
     _write(source / "notebooks" / "index.md", contents("The course", "Read the notebooks in this order.", stems))
     _write(shown / "index.md", contents("Slides", "The notebooks as slides; the arrow keys turn them.", stems))
     _write(source / "_static" / "labs.js", library_of(states.values()))
-    shutil.copy(STARTER, source / "_static")
+    for script in (STARTER, PLAYER):
+        shutil.copy(script, source / "_static")
 
 
 def _texts(exam: bool) -> Pages:
@@ -165,7 +166,7 @@ def _texts(exam: bool) -> Pages:
         for each in TEXTS.iterdir()
         if each.suffix != ".toml" and each.is_file() and (exam or each.name != "exam.md")
     ):
-        folder = {".css": "_static/", ".js": "_static/", ".html": "_templates/"}.get(Path(text.name).suffix, "")
+        folder = {".css": "_static/", ".html": "_templates/"}.get(Path(text.name).suffix, "")
         yield folder + text.name, text.read_text("utf-8")
 
 

@@ -27,20 +27,7 @@ _STILL = np.zeros((3, 3)).tolist()
 
 
 def settings_of(lab: ObserverLab, wanted: Mapping[str, Any]) -> Settings:
-    """Complete settings of the observer lab, from those that the text file of the article gives.
-
-    Parameters
-    ----------
-    lab : ObserverLab
-        Checks the settings, and prints motions over time for the page.
-    wanted : mapping of str to object
-        Settings of the lab, or `towards`, `speed`, `guess`, `told`, `turn`, `gain` and `noise`.
-
-    Raises
-    ------
-    ValueError
-        If the lab does not take them.
-    """
+    """Complete settings of the observer lab, checked by it, from those that the text file of the article gives."""
     own = {name: value for name, value in wanted.items() if name in DRIVE or name in lab.schema}
     own |= {"X0": wanted.get("X0", DRIVE["X0"])}
     X0, travels = np.array(own["X0"], dtype=float), -np.array(DRIVE["b"])
@@ -79,30 +66,23 @@ def prepared(scene: Mapping[str, Any], lab: ObserverLab) -> dict[str, Any]:
     hand = scene["hand"]
     if not isinstance(hand, str):
         stops = [
-            {"text": text, "value": value, "changes": _changed(settings, settings_of(lab, {**first, **changes}))}
-            for text, value, changes in _stops(hand)
+            {"text": text, "changes": _changed(settings, settings_of(lab, {**first, hand["setting"]: value}))}
+            for text, value in _stops(hand)
         ]
-        hand = {"stops": stops, "at": [stop["value"] for stop in stops].index(_value(first, hand["setting"]))}
+        hand = {"stops": stops, "at": [stop["changes"] for stop in stops].index({})}
     played = ("name", "bare", "why", "play", "end", "charts", "note", "kept", "right")
-    return {name: scene[name] for name in played if name in scene} | {
-        "settings": settings,
-        "after": after,
-        "hand": hand,
-    }
+    given = {name: scene[name] for name in played if name in scene}
+    return {**given, "settings": settings, "after": after, "hand": hand}
 
 
-def _value(first: Mapping[str, Any], setting: str) -> Any:
-    return first.get(setting, {"outputs": ["y1", "y2"], "turn": 0}.get(setting))
-
-
-def _stops(hand: Mapping[str, Any]) -> Iterator[tuple[str, Any, dict[str, Any]]]:
-    setting = hand["setting"]
+def _stops(hand: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield the stops of a hand, each with its text."""
     if "stops" in hand:
-        yield from ((text, value, {setting: value}) for text, value in hand["stops"].items())
+        yield from hand["stops"].items()
         return
     for k in range(round((hand["to"] - hand["from"]) / hand["step"]) + 1):
         value = round(hand["from"] + k * hand["step"], 6)
-        yield f"{value:g} {hand['unit']}".strip(), value, {setting: value}
+        yield f"{value:g} {hand['unit']}".strip(), value
 
 
 def _changed(before: Mapping[str, Any], after: Mapping[str, Any]) -> Settings:
@@ -118,11 +98,7 @@ def scenes() -> tuple[list[dict[str, Any]], ObserverLab]:
     """The scenes with their words, formulas and what the page plays; and the lab that plays them."""
     lab = observer_lab()
     found = [
-        {
-            **scene,
-            "played": prepared(scene, lab),
-            "formulas": [mathml(formula, "block") for formula in scene["symbols"]],
-        }
+        {**scene, "played": prepared(scene, lab), "formulas": [mathml(each, "block") for each in scene["symbols"]]}
         for scene in ARTICLE["scene"]
     ]
     lab.settings = found[0]["played"]["settings"]

@@ -11,6 +11,7 @@ from importlib import metadata
 from typing import Any
 
 from percept_obs.labs.observer.lab import ObserverLab
+from percept_obs.labs.shared.printed import FRONT
 from percept_obs.labs.shared.saved import place_of
 from percept_obs.papers import LEDGERS, Verdict
 from percept_obs.site.article import ARTICLE, scenes
@@ -81,6 +82,10 @@ ALONE = (
     ),
 )
 """What no other package shows: a title, a page, and words."""
+
+
+PLAYER = FRONT / "article.js"
+"""Script that plays the scenes in the lab."""
 
 
 def tree() -> str:

@@ -1,4 +1,4 @@
-// The article's hand: the scene that is read sets the lab, its question runs it, and its words wait for the run.
+// The article: the scene that is read sets the lab, its question runs it, and its words wait for the run.
 (() => {
   const SCENES = JSON.parse(document.getElementById("scenes").textContent);
   const ABOVE = window.matchMedia("(max-width: 760px), (max-width: 1000px) and (orientation: portrait)");
@@ -108,7 +108,7 @@
     /** Nobody waits for a run that is not looked at: its answer is told. */
     leave() {
       cancelAnimationFrame(this.frame);
-      if (this.timer) this.tell(this.scene);
+      if (this.timer) this.tell(this.scene, false);
     }
 
     listen(scene) {
@@ -205,17 +205,19 @@
       if (scene.play !== false && (questions.telling || !questions.answered)) this.tell(scene);
     }
 
-    tell(scene) {
+    tell(scene, inSight = true) {
       clearInterval(this.timer);
       this.timer = 0;
       scene.node.classList.add("answered");
-      this.aloud.textContent = scene.node.querySelector(".told").textContent;
+      const told = scene.node.querySelector(".told");
+      this.aloud.textContent = told.textContent;
+      if (inSight) told.scrollIntoView({ block: "nearest" });
     }
 
     /** End what an answer has begun. */
     settle(scene) {
       cancelAnimationFrame(this.frame);
-      if (this.timer) this.tell(scene);
+      if (this.timer) this.tell(scene, false);
       this.screen.clock.pause();
       if (this.screen.why) this.screen.setWhy(false);
       this.lab.state.amend({ question: null });
