@@ -21,7 +21,7 @@ from percept_obs.site import front_ends, lite, slides
 from percept_obs.site.addresses import CARD, above_versions, card, write_sitemap
 from percept_obs.site.exercises import on_a_page
 from percept_obs.site.faults import faults_of
-from percept_obs.site.front import first_lab, front
+from percept_obs.site.front import PLAYER, front, tree
 from percept_obs.site.named import named
 from percept_obs.site.notebooks import SiteFault, labs_of, not_run, run_all, without_widgets
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
@@ -105,22 +105,27 @@ def build(
         raise SiteFault("\n".join(("the site has faults:", *found)))
     with tempfile.TemporaryDirectory() as folder:
         source, shown = Path(folder) / "site", Path(folder) / "slides"
-        lab = first_lab()
-        _notebooks(source, shown, notebooks, run, lab)
+        article, lab = front(notebooks)
+        _notebooks(source, shown, notebooks, run)
+        _write(source / "_static" / "first.js", library_of([lab.get_state()]))
         print("writing the papers' equations")
         for path, text in [
             *ledger_pages(run & {*NAMED}),
             *reference(),
             *_texts(exam),
-            ("index.md", front(lab, notebooks)),
+            ("index.md", tree()),
         ]:
             _write(source / path, text)
         print("writing the pages")
         (source / "_static" / CARD).write_bytes(card())
         with resources.as_file(TEXTS / "pictures") as pictures:
             shutil.copytree(pictures, source / "pictures")
-        context = {"versions": above_versions(address), "python": lite.PLACES if python else {}, "fields": not exam}
-        settings = {"html_baseurl": address, "html_context": context}
+        context = {
+            **{"versions": above_versions(address), "python": lite.PLACES if python else {}},
+            **{"fields": not exam, "article": article},
+        }
+        in_place = {"index": "article.html"}
+        settings = {"html_baseurl": address, "html_context": context, "html_additional_pages": in_place}
         _generate(source, target, {"myst_substitutions": names, **settings}, parallel=PROCESSES)
         slides.prepare(shown, (TEXTS / "slides.css").read_text("utf-8"))
         extensions = [*SETTINGS["extensions"], "sphinx_revealjs"]
@@ -140,12 +145,11 @@ def _notebooks(
     shown: Path,
     notebooks: Mapping[str, Mapping[str, Any]],
     run: set[str],
-    lab: Mapping[str, Any],
 ) -> None:
-    """Run notebooks, and write all and their slides, with the scripts of their labs and of the first page's."""
+    """Run notebooks, and write all and their slides, with the scripts of their labs."""
     import nbformat
 
-    states: dict[bytes, Mapping[str, Any]] = {lab["texts"]: lab}
+    states: dict[bytes, Mapping[str, Any]] = {}
     wanted = {name: notebook for name, notebook in notebooks.items() if name in run}
     kept = ((name, not_run(notebook)) for name, notebook in notebooks.items() if name not in run)
     for name, notebook in chain(run_all(wanted, PROCESSES), kept):
@@ -158,14 +162,18 @@ def _notebooks(
     _write(source / "notebooks" / "index.md", contents("The course", "Read the notebooks in this order.", stems))
     _write(shown / "index.md", contents("Slides", "The notebooks as slides; the arrow keys turn them.", stems))
     _write(source / "_static" / "labs.js", library_of(states.values()))
-    for script in (STARTER, STARTER.with_name("exercises.js")):
+    for script in (STARTER, STARTER.with_name("exercises.js"), PLAYER):
         shutil.copy(script, source / "_static")
 
 
 def _texts(exam: bool) -> Pages:
     """Yield the texts written by hand, and the table of front ends."""
     yield "front_ends.md", front_ends.page()
-    for text in (each for each in TEXTS.iterdir() if each.is_file() and (exam or each.name != "exam.md")):
+    for text in (
+        each
+        for each in TEXTS.iterdir()
+        if each.suffix != ".toml" and each.is_file() and (exam or each.name != "exam.md")
+    ):
         folder = {".css": "_static/", ".html": "_templates/"}.get(Path(text.name).suffix, "")
         yield folder + text.name, text.read_text("utf-8")
 

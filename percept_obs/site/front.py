@@ -1,16 +1,20 @@
-"""The site's first page: a live lab, one question, and three doors."""
+"""The site's first page: the article, three doors, and what nobody else shows."""
 
 from __future__ import annotations
 
+import json
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from html import escape
+from importlib import metadata
 from typing import Any
 
-from percept_obs.labs import observer_lab
+from percept_obs.labs.observer.lab import ObserverLab
+from percept_obs.labs.shared.printed import FRONT
 from percept_obs.labs.shared.saved import place_of
 from percept_obs.papers import LEDGERS, Verdict
+from percept_obs.site.article import ARTICLE, scenes
 from percept_obs.site.pages import slug
 
 STEPS = {
@@ -20,10 +24,6 @@ STEPS = {
     "Doubt": ("09", "11", "12", "13", "14"),
 }
 """Steps of the course, each with its notebooks."""
-
-QUESTION = "You drive straight at a standing stone. Does its image tell how far it is?"
-ANSWERS = ("Yes, at once", "Yes, but slowly", "No")
-"""Answers of the lab's question "straight", in its order."""
 
 LEARN = {
     "tour.html": "A tour of the package",
@@ -52,50 +52,87 @@ NAMES = {
     Verdict.NOT_CHECKABLE: "cannot be checked",
 }
 
-ASKED = """<script>
-document.querySelectorAll(".front-question button").forEach((button, k) => {
-  button.addEventListener("click", () => {
-    const [lab] = window.perceptObsLabs;
-    lab.first.ask("straight");
-    lab.first.answer(k);
-    document.querySelector("[data-percept-obs]").scrollIntoView({ block: "start" });
-  });
-});
-</script>"""
+INSTALL = 'python3 -m venv .venv && .venv/bin/python -m pip install -e ".[course]" && .venv/bin/percept-obs lab'
+CITE = (
+    "The percept_obs authors: <cite>percept_obs: observers for perspective dynamic systems</cite>, version "
+    f"{metadata.version('percept_obs')}. CITATION.cff has it for programs that keep references, with the papers."
+)
 
 PAGES = """notebooks/index how tour use_labs labs observers ledger/index reference/index guide about"""
 """Pages in the order of the contents."""
 
-HEADER = "---\nhide-toc: true\n---\n\n# One picture never tells how far. Move, and it does."
+ALONE = (
+    (
+        "A figure that cannot be reproduced",
+        "notebooks/09_reading_papers.html",
+        "We run a published comparison with its own "
+        "numbers, and the run does not show what the figure shows: judge it yourself.",
+    ),
+    (
+        "A slip, named with its step",
+        "notebooks/08_check_a_derivation.html",
+        "Type your derivation line by line. A wrong term is marked, and the step is named where it went wrong.",
+    ),
+    (
+        "The limit under the error",
+        "notebooks/12_the_limit.html",
+        "Under every error stands the least one that the noise "
+        "allows, so that you see whether an observer or the pictures are to blame.",
+    ),
+)
+"""What no other package shows: a title, a page, and words."""
 
 
-def first_lab() -> dict[str, Any]:
-    """State of the lab on the first page."""
-    return dict(observer_lab().get_state())
+PLAYER = FRONT / "article.js"
+"""Script that plays the scenes in the lab."""
 
 
-def front(state: Mapping[str, Any], notebooks: Mapping[str, Mapping[str, Any]]) -> str:
-    """Text of the first page.
+def tree() -> str:
+    """Text of the page that holds the contents; the article takes its place."""
+    words = "\n\n".join(re.sub("<[^>]*>", "", scene["text"]) for scene in ARTICLE["scene"])
+    return "\n".join(
+        [f"# {ARTICLE['title']}", "", words, "", "```{toctree}", ":maxdepth: 2", "", *PAGES.split(), "```", ""]
+    )
+
+
+def front(notebooks: Mapping[str, Mapping[str, Any]]) -> tuple[dict[str, Any], ObserverLab]:
+    """What the template of the first page is filled with, and the lab that it needs.
 
     Parameters
     ----------
-    state : mapping
-        State of its lab, see `first_lab`.
     notebooks : mapping of str to notebook
         The site's notebooks, by their file names.
     """
-    tree = "\n".join(["```{toctree}", ":hidden:", ":maxdepth: 2", "", *PAGES.split(), "```"])
-    scripts = "".join(f'<script defer src="_static/{name}"></script>' for name in ("labs.js", "alone.js"))
-    answers = "".join(f'<button type="button">{answer}</button> ' for answer in ANSWERS)
+    found, lab = scenes()
+    pages = {name[:2]: _page(name) for name in notebooks}
+    for scene in found:
+        scene["to"] = pages.get(scene["notebook"], "notebooks/index.html")
+    played = json.dumps([scene["played"] for scene in found], allow_nan=False, separators=(",", ":"))
+    shown = "".join(
+        f'<section><h3><a href="{to}">{title}</a></h3><p>{words}</p></section>' for title, to, words in ALONE
+    )
     doors = [
-        scripts + place_of(state),
-        f'<p class="front-question"><strong>{QUESTION}</strong><br>{answers}</p>{ASKED}',
-        f"<h2>Learn</h2>{_course(notebooks)}{_links(LEARN)}",
-        f'<div class="front-doors"><section><h2>Teach</h2>{_links(TEACH)}</section>',
-        f"<section><h2>Look things up</h2>{_verdicts()}{_links(LOOK_UP)}</section></div>",
-        '<h2>Install</h2><pre>python3 -m pip install -e ".[course]"\npercept-obs lab</pre>',
+        f'<h2 id="learn">Learn</h2>{_course(notebooks)}{_links(LEARN)}',
+        f'<div class="front-doors"><section><h2 id="teach">Teach</h2>{_links(TEACH)}</section>',
+        f'<section><h2 id="look-up">Look things up</h2>{_verdicts()}{_links(LOOK_UP)}</section></div>',
+        f'<h2>What nobody else shows</h2><div class="front-doors">{shown}</div>',
+        '<h2 id="install">Install</h2><p>In the folder of the repository, with Python 3.11 or newer:</p>',
+        f"<pre>{INSTALL}</pre>",
+        f"<h2>Cite</h2><p>{CITE}</p>",
     ]
-    return "\n\n".join([HEADER, "```{raw} html\n" + "\n".join(doors) + "\n```", tree, ""])
+    words = {name: ARTICLE[name] for name in ("title", "lead")}
+    inside = played.replace("<", "\\u003c")
+    return {
+        **words,
+        "scenes": found,
+        "played": inside,
+        "lab": place_of(lab.get_state()),
+        "doors": "\n".join(doors),
+    }, lab
+
+
+def _page(notebook: str) -> str:
+    return f"notebooks/{notebook.removesuffix('.ipynb')}.html"
 
 
 def _links(links: Mapping[str, str]) -> str:
@@ -107,8 +144,7 @@ def _course(notebooks: Mapping[str, Mapping[str, Any]]) -> str:
 
     def listed(numbers: tuple[str, ...]) -> Iterator[str]:
         for name, title, time in (by_number[number] for number in numbers if number in by_number):
-            to = f"notebooks/{name.removesuffix('.ipynb')}.html"
-            yield f'<li><a href="{to}">{escape(title)}</a> <small>{escape(time)}</small></li>'
+            yield f'<li><a href="{_page(name)}">{escape(title)}</a> <small>{escape(time)}</small></li>'
 
     steps = (
         f"<section><h3>{step}</h3><ol>{''.join(listed(numbers))}</ol></section>" for step, numbers in STEPS.items()

@@ -15,7 +15,7 @@ export const IN_TESTS = [
 export default [
   js.configs.recommended,
   {
-    files: ["src/**/*.js"],
+    files: ["src/**/*.js", "article.js"],
     ignores: MODEL,
     languageOptions: { globals: globals.browser },
   },

@@ -29,6 +29,8 @@ const [NEAREST, FARTHEST] = [0.8, 200];
 
 export class ObserverScreen extends Screen {
   static parts = { drawImage, drawWorld, chartOf, sentence };
+  /** True where a page shows the truth alone. */
+  bare = false;
   /** True once a distance was hardly seen from above. */
   steep = false;
   /** What is seen at the time that was drawn last, in metres before the camera. */
@@ -207,7 +209,7 @@ export class ObserverScreen extends Screen {
     const guessOf = (state) => (state[2] > 1e-4 ? placeOf(state) : null);
     const guess = guessOf(estimate);
     // The chosen one last, so that it lies on top.
-    const beads = [...shown.runs.filter((each) => each !== run), run].map((each, k, all) => {
+    const beads = (this.bare ? [] : [...shown.runs.filter((each) => each !== run), run]).map((each, k, all) => {
       const at = stateOf(each.estimate);
       return { run: each, state: at, guess: guessOf(at), chosen: each === run, ring: 11 + 5 * (all.length - 1 - k) };
     });
@@ -226,7 +228,7 @@ export class ObserverScreen extends Screen {
       ...{ film, up: film && film.extent[2] > film.extent[3] ? -1 : 1 },
       ...{ camera: inWorld([0, 0, 0]), point: inWorld(place), truth: Boolean(state) },
       copies: state && speedsOf(place, motion),
-      expects: expected && speedsOf(expected, settings.believed ?? motion)[1],
+      expects: !this.bare && expected && speedsOf(expected, settings.believed ?? motion)[1],
       movable: simulated || (state && !varies(settings, lab.model)),
       foe: shown.foe,
       radius: radiusOf(shown, shown.radius * y[2]),

@@ -30,11 +30,12 @@ export function chartOf(screen, scene) {
   const [from, to] = indicesIn(time, span);
   const distances = (result, rows) => distancesOf(screen.lab.kernels, result, rows);
   const actual = truth?.length ? distances(shown, truth) : null;
-  const lines = linesOf(scene, (result, { estimate }) => distances(result, estimate), () => actual);
+  const all = linesOf(scene, (result, { estimate }) => distances(result, estimate), () => actual);
+  const lines = screen.bare ? all.slice(-1) : all;
   const own = lines.filter(({ id }) => id !== "true" && id !== "kept");
   const found = own.map(({ values }) => values.subarray(from, to + 1));
   const most = actual ? greatest(actual.subarray(from, to + 1)) : median(found.at(-1)) * 2;
-  const since = actual ? time[0] + courseOf(screen.lab.kernels, shown, chosen).found : Infinity;
+  const since = actual && !screen.bare ? time[0] + courseOf(screen.lab.kernels, shown, chosen).found : Infinity;
   const told = since > time[0] && (secret ? since <= now : since < Infinity);
   const value = told ? distances(shown, chosen.estimate)[between(time, since).sample] : 0;
   const text = `within ${percent(shown.tolerance, 6)} from ${since.toFixed(1)} s`;

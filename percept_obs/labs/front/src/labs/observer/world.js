@@ -44,7 +44,8 @@ export function drawWorld(screen, scene, motion, note) {
   view.avoidLine(camera, goal);
   const share = 60 / Math.max(Math.hypot(goal[0] - camera[0], goal[1] - camera[1]), 60);
   const named = [0, 1].map((c) => camera[c] + share * (goal[c] - camera[c]));
-  view.tag({ id: "heading", text: "heading", at: named, colour: theme.warning, rank: 7, gap: 4, towards: [1, 0] });
+  const heading = { id: "heading", text: "heading", at: named, colour: theme.warning, rank: 7, gap: 4 };
+  if (b.some(Boolean)) view.tag({ ...heading, towards: [1, 0] });
   const turn = Math.atan2(along([0, 0, 1])[0] - camera[0], camera[1] - along([0, 0, 1])[1]);
   const ray = along(seen.place);
   view.line([camera, ray], theme.ink, { alpha: 0.75 });
