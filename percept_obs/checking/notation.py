@@ -7,11 +7,13 @@ from typing import Any, NoReturn
 import sympy as sp
 from lark import Token, UnexpectedCharacters
 
+from percept_obs.checking.dialects import plain
 from percept_obs.checking.points import key
 from percept_obs.checking.refusing import CLOSING, CannotRead, about_character, two_meanings
-from percept_obs.checking.spelling import laid_out, lexed, spelled
+from percept_obs.checking.spelling import lexed
 from percept_obs.checking.tokens import (
     AROUND,
+    OF_SEVERAL,
     OPENING,
     SUMMAND_ENDS,
     Functions,
@@ -39,14 +41,15 @@ class Notation:
     """A text with the letters, labels and functions that are known, and what its notation stands for."""
 
     def __init__(self, text: str, letters: Mapping[str, Any], labels: Iterable[str], functions: Functions) -> None:
-        self.text, self.letters, self.labels, self.functions = text, letters, set(labels), functions
+        self.text, self.letters, self.labels, self.functions = text, letters, set(labels), {**OF_SEVERAL, **functions}
         self.known = {*letters, *self.labels}
         if len(text) > LONGEST:
             raise CannotRead(text, LONGEST, f"the formula has {len(text)} characters; at most {LONGEST}")
-        self.plain, self.origin = spelled(text)
         for pattern, what in _TOO_LONG.items():
-            if found := re.search(pattern, self.plain):
-                self.refuse(f"{what}; write * between letters", found.start())
+            if found := re.search(pattern, text):
+                raise CannotRead(text, found.start(), f"{what}; write * between letters")
+        source, self.dialects = plain(text, self.is_name)
+        self.plain, self.origin = source.text, source.origin
         self.bound: dict[str, sp.Symbol] = {}
 
     def refuse(self, message: str, at: Any = None) -> NoReturn:
@@ -57,7 +60,7 @@ class Notation:
 
     def _raw(self) -> list[Token]:
         try:
-            raw = [*lexed(laid_out(self.plain)), Token("END", "", len(self.plain), end_pos=len(self.plain))]
+            raw = [*lexed(self.plain), Token("END", "", len(self.plain), end_pos=len(self.plain))]
         except UnexpectedCharacters as error:
             position = self.origin[error.pos_in_stream or 0]
             raise CannotRead(self.text, position, about_character(self.text[position])) from None

@@ -14,7 +14,7 @@ import sympy as sp
 from percept_obs.checking.explaining import Explanation, explained, plain, sentences, wrong_terms
 from percept_obs.checking.limits import SECONDS, TooLong, limited
 from percept_obs.checking.lines import typed
-from percept_obs.checking.matching import Judged, Verdict, judged
+from percept_obs.checking.matching import Judged, Verdict, judged, steps
 from percept_obs.checking.places import put
 from percept_obs.checking.reading import words_of
 from percept_obs.checking.target import Target
@@ -49,6 +49,10 @@ class Review:
         Processor time that may be taken to find all hints.
     unused : tuple of str
         Letters that were given a meaning which no line uses.
+    chain : str
+        Of a derivation: which line is the first that does not follow from the one before.
+    dialects : tuple of str
+        Dialects in which the text was written, such as "MATLAB"; see `percept_obs.checking.dialects`.
 
     Raises
     ------
@@ -75,6 +79,8 @@ class Review:
     hints: int = 0
     seconds: float = SECONDS
     unused: tuple[str, ...] = ()
+    chain: str = ""
+    dialects: tuple[str, ...] = ()
 
     @property
     def right(self) -> bool | None:
@@ -102,8 +108,10 @@ class Review:
         if wrong:
             count = len(self.lines)
             what = f"{len(wrong)} of {count} lines {'is' if len(wrong) == 1 else 'are'} wrong"
-            more = f"; hint({self.hints + 1}) says {HINTS[self.hints]}" if self.hints < 3 else ""
-            return (what if count > 1 else "Not right yet") + more + "."
+            after = max(self.hints, int(count == 1))  # of one line it is known which one is wrong
+            more = f"; hint({after + 1}) says {HINTS[after]}" if after < 3 else ""
+            told = f" {self.chain[:1].upper()}{self.chain[1:]}." if self.hints and self.chain else ""
+            return (what if count > 1 else "Not right yet") + more + "." + told
         untold = [line for line in self.lines if line.verdict == Verdict.CANNOT_TELL]
         if untold:
             return next((f"{line.note.capitalize()}." for line in untold if line.note), CANNOT_BE_TOLD)
@@ -245,7 +253,7 @@ def check(mine: Any, target: Any) -> Review:
     True
     >>> review = check("y3' = -y3 (a31 y1 + a32 y2 + a33 - b3 y3)", system)
     >>> print(review)
-    Not right yet; hint(1) says which line.
+    Not right yet; hint(2) says which term.
       y3' = -y3 (a31 y1 + a32 y2 + a33 - b3 y3)
     >>> print(review.hint(2))
     Not right yet; hint(3) says which slip, and in which step.
@@ -256,12 +264,15 @@ def check(mine: Any, target: Any) -> Review:
     words_of("y1")  # loads the grammar, which takes its time once
     began = time.thread_time()
 
-    def lines() -> tuple[Target, tuple[Judged, ...], tuple[str, ...]]:
+    def lines() -> Review:
         meant = goal.asked(goal.read(mine))
         text = meant.read(mine)
-        return meant, judged(text.lines, meant), tuple(d.name for d in text.definitions if not d.used)
+        meant = meant.signed(text)
+        found, unused = judged(text.lines, meant), tuple(d.name for d in text.definitions if not d.used)
+        if not found:
+            raise ValueError("there are definitions only; add the line that is asked for")
+        chain = steps(text, found, meant, mine)
+        return Review(meant, found, unused=unused, chain=chain, dialects=text.dialects)
 
-    meant, found, unused = limited(lines, DECIDING)
-    if not found:
-        raise ValueError("there are definitions only; add the line that is asked for")
-    return Review(meant, found, seconds=max(DECIDING - (time.thread_time() - began), 0.1), unused=unused)
+    found = limited(lines, DECIDING)
+    return replace(found, seconds=max(DECIDING - (time.thread_time() - began), 0.1))

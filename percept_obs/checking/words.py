@@ -9,10 +9,11 @@ from typing import Any
 import sympy as sp
 from lark import Token
 
+from percept_obs.checking.dialects.symbols import GREEK
 from percept_obs.checking.notation import LONGEST_WORD, Notation
 from percept_obs.checking.points import key
 from percept_obs.checking.refusing import CLOSING, CannotRead, about_command, two_meanings
-from percept_obs.checking.spelling import name_of, other_names, rate_of
+from percept_obs.checking.spelling import LABELS, name_of, other_names, rate_of
 from percept_obs.checking.tokens import FUNCTIONS, OPENING, WRAPPERS, bullet, partners, split, top_level
 
 _CONTINUES = {"PLUS", "MINUS", "_TIMES", "SLASH", "EQUAL", "RELATION", "COMMA", "_POWER", "LPAR", "LSQB", "LBRACE"}
@@ -25,6 +26,9 @@ _LABEL = re.compile(
     rf"|(LSQB|LPAR) {_MANY} (RSQB|RPAR)( _POWER (LBRACE )?NAME:T( RBRACE)?)?"
     rf"|LSQB LSQB {_N} RSQB( COMMA LSQB {_N} RSQB)* RSQB) EQUAL"
 )
+
+
+_NEVER_PROSE = {*FUNCTIONS, *WRAPPERS, *GREEK.split(), "Piecewise", "Eq", "True", "otherwise"}
 
 
 class Words(Notation):
@@ -274,18 +278,21 @@ class Words(Notation):
             return None  # an equation of columns
         if not all(part in self.known for part in names):
             rate = re.fullmatch(r"[dD](\w+)", name)
-            if rate and key(f"{rate[1]}dot") in self.labels:
+            if rate and key(f"{rate[1]}dot") in self.labels and "d" in self.letters:
                 told = (f"the rate of {rate[1]}", "a letter of your own")
                 self.refuse(two_meanings(told, f"for the rate write {rate[1]}' ="), line[0])
             if any(accent in name for accent in ("dot", "hat", ",")) or name in FUNCTIONS:
-                there = ", ".join(sorted(self.labels))
-                self.refuse(f'there is no line "{name}"; there are {there}', line[0])
+                there = ", ".join(re.sub("dot$", "'", each) for each in self.labels if each not in LABELS)
+                asked = f"asked for are {there}" if there else "one formula is asked for, so leave the left side out"
+                self.refuse(f"the line {re.sub('dot$', chr(39), name)} is not asked for here; {asked}", line[0])
             self.known.add(name)
         return line[0].update(type="LABEL", value=name)
 
     def _spelled(self, name: str) -> str:
         """Return a name as it is known, in another spelling if need be."""
-        return next((each for each in (name, *other_names(name)) if each in self.known), name)
+        if name in self.known or (name.startswith("d") and "d" in self.letters):
+            return name
+        return next((each for each in other_names(name) if each in self.known), name)
 
     def _told(self, tokens: list[Token]) -> list[Token]:
         """Replace names by letters, functions or several letters side by side, and refuse what has no meaning."""
@@ -336,6 +343,12 @@ class Words(Notation):
         start = token.start_pos or 0
         typed = self.text[self.origin[start] : self.origin[(token.end_pos or start + 1) - 1] + 1]
         self.refuse(f'"{typed[:40]}" is no letter here{guess} {known}', token)
+
+    def is_name(self, word: str) -> bool:
+        """Return True for a word that may be a letter or a function here, or nearly one."""
+        name = self._spelled(name_of(word))
+        named = name in self.known or name in _NEVER_PROSE or name in self.functions or bool(self._ways(name))
+        return named or bool(len(name) > 3 and difflib.get_close_matches(name, self.known, 1, 0.8))
 
     def column(self, name: str) -> list[Any]:
         """Return the letters that a letter without an index stands for: b1, b2, b3 for b; empty if it has none."""
