@@ -205,7 +205,7 @@ class Builder:
         return base**exponent
 
     def _rate(self, tree: Tree, sign: Token, inner: Any) -> sp.Expr:
-        """Return the rate of an expression, d/dt (1/Z), with the rates of its letters; letters without one are constant."""
+        """Return the rate of an expression, d/dt (1/Z), by the rates of its letters; others are constant."""
         value = self._scalar(inner)
         names = {s: key(f"{s.name}dot") for s in value.free_symbols}
         known = (*self.letters, *self.words.labels)

@@ -1,5 +1,6 @@
 """Explain a wrong formula: the slip, the term in which it is, the step in which it happened."""
 
+import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -174,7 +175,9 @@ def _said(name: str, slip: Slip) -> str:
 
 def plain(e: sp.Basic) -> str:
     """Return an expression as it may be typed."""
-    return str(e).replace("**", "^").replace("*", " ")
+    text = str(e).replace("**", "^").replace("*", " ")
+    text = re.sub(r"\\int\\limits_\{(.*?)\}\^\{(.*?)\} (.*?)\\, d\\?(\w+)", r"int_\1^\2 \3 d\4", text)
+    return re.sub(r"\b([A-Za-z]\w*?)inv_(\d+)", r"(\1^-1)_\2", re.sub(r"[{}\\]", "", text) if "int_" in text else text)
 
 
 def wrong_terms(found: Explanation, mine: sp.Expr) -> list[tuple[tuple[int, ...], sp.Expr]]:

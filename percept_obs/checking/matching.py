@@ -96,7 +96,9 @@ def _is_known(reading: Reading, target: Target) -> bool:
     letter = target.letters.get(reading.name)
     named = letter is not None and reading.name not in target.rows and reading.name not in target.blocks
     used = set(target.relations) & reading.formula.free_symbols
-    return bool(named and used and same(reading.formula.xreplace(dict(target.relations)), letter))
+    return bool(
+        named and (used or reading.formula == letter) and same(reading.formula.xreplace(dict(target.relations)), letter)
+    )
 
 
 def _noted(line: Judged, note: str) -> Judged:
@@ -290,9 +292,8 @@ def steps(text: Text, lines: Sequence[Judged], target: Target, mine: Any) -> str
     }
     known = {key(s.name): e for s, e in target.relations.items()}
     for d in text.definitions:
-        errs = (d.name in known and d.used and d.name.endswith("dot")) or d.name in ("X", "Y", "Z")
-        if errs and d.name in known and same(d.formulas[-1].xreplace(dict(target.relations)), known[d.name]) is False:
-            return f"in line {number[d.at]} your {primed(d.name)} is not what the motion gives; the rest follows or is told"
+        if d.name in known and same(d.formulas[-1].xreplace(dict(target.relations)), known[d.name]) is False:
+            return f"in line {number[d.at]} your {primed(d.name)} is not what is known of it"
     for k, line in enumerate(lines):
         before = [other for other in lines[:k] if other.row == line.row and other.verdict == Verdict.RIGHT]
         if line.verdict == Verdict.WRONG and before and line.at >= 0:

@@ -239,30 +239,6 @@ class Notation:
             out.append(token.update(type=f"{kind}_{'CLOSE' if closes else 'OPEN'}"))
         return out
 
-    def _fractions(self, tokens: list[Token]) -> list[Token]:
-        r"""Put the digits of \frac12 in braces, and read a root before a bracket as a function."""
-        out: list[Token] = []
-        wanted = 0
-        for k, token in enumerate(tokens):
-            if token.type == "_ROOT" and tokens[k + 1].type == "LPAR":
-                token = token.update(type="FUNCTION", value="sqrt")
-            if token.type == "_FRACTION":
-                wanted = 2
-            # TeX takes one digit for each part of a fraction: \frac12 is 1/2
-            elif wanted and token.type == "NUMBER" and token.isdigit() and len(token) <= wanted:
-                for digit in token:
-                    out += [
-                        token.update(type="LBRACE", value="{"),
-                        token.update(value=digit),
-                        token.update(type="RBRACE", value="}"),
-                    ]
-                wanted -= len(token)
-                continue
-            elif wanted != 1 or token.type != "LBRACE":
-                wanted = 0
-            out.append(token)
-        return out
-
     def _arguments(self, tokens: list[Token]) -> list[Token]:
         """Put arguments of functions without brackets in brackets, where it is clear how far they go."""
         partner = partners(tokens)

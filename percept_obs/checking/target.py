@@ -192,7 +192,7 @@ class Target:
         return Text(self._of_sympy(mine))
 
     def _alone(self, text: Text) -> Text:
-        """Take the only formula of a text for what is asked, if that is one formula or matrix, whatever it is called."""
+        """Take the only formula of a text for what is asked, if that is one formula or matrix, whatever its name."""
         if text.lines or not text.definitions or len({line.whole for line in self.lines}) > 1:
             return text
         *rest, last = text.definitions

@@ -23,8 +23,6 @@ FUNCTIONS: Functions = {
     **{"Abs": sp.Abs, "fabs": sp.Abs, **_QUOTIENTS},
 }
 OF_SEVERAL: Functions = {"max": sp.Max, "min": sp.Min}
-WRAPPERS = {"Matrix", "ImmutableMatrix", "array", "expand", "simplify", "factor"}
-"""Calls that leave a formula as it is."""
 
 OPENING = {
     "LPAR": "RPAR",

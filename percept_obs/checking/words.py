@@ -2,7 +2,7 @@
 
 import difflib
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -14,7 +14,7 @@ from percept_obs.checking.notation import LONGEST_WORD, Notation
 from percept_obs.checking.points import key
 from percept_obs.checking.refusing import CLOSING, CannotRead, about_command, two_meanings
 from percept_obs.checking.spelling import LABELS, name_of, other_names, rate_of
-from percept_obs.checking.tokens import FUNCTIONS, OPENING, WRAPPERS, bullet, partners, split, top_level
+from percept_obs.checking.tokens import FUNCTIONS, OPENING, bullet, partners, split, top_level
 
 _CONTINUES = {"PLUS", "MINUS", "_TIMES", "SLASH", "EQUAL", "RELATION", "COMMA", "_POWER", "LPAR", "LSQB", "LBRACE"}
 _GOES_ON = {"PLUS", "MINUS", "_TIMES", "SLASH", "EQUAL", "RELATION", "_POWER", "RPAR", "RSQB", "RBRACE"}
@@ -28,7 +28,7 @@ _LABEL = re.compile(
 )
 
 
-_NEVER_PROSE = {*FUNCTIONS, *WRAPPERS, *GREEK.split(), "Piecewise", "Eq", "True", "otherwise"}
+_NEVER_PROSE = {*FUNCTIONS, *GREEK.split(), "Piecewise", "Eq", "True", "otherwise"}
 
 
 class Words(Notation):
@@ -47,7 +47,7 @@ class Words(Notation):
             self._joined,
         )
         lines = (self._lines,) if strict else ()
-        for each in (*passes, *lines, self._told, self._bars, self._fractions, self._arguments):
+        for each in (*passes, *lines, self._told, self._bars, self._arguments):
             found = each(found) if strict else self._leniently(each, found)
         return found
 
@@ -175,8 +175,7 @@ class Words(Notation):
     def _lines(self, tokens: list[Token]) -> list[Token]:
         """Join continued lines, take bullets away, and put the left side of each line into one token."""
         out: list[Token] = []
-        for line, end in self._unwrapped(split(tokens)):
-            line = self._without_remark(line)
+        for line, end in split(tokens):
             rest = next((k for k, token in enumerate(line[:2]) if token.type == "EQUAL"), 0) + 1
             if rest == 2 and line[2:3] and line[2].type in ("LSQB", "LPAR") and (vector := self._label(line[2:])):
                 line = [vector, *line[2 + next(k for k, t in enumerate(line[2:]) if t.type == "EQUAL") :]]
@@ -233,35 +232,12 @@ class Words(Notation):
                 out.append(token)
         return out
 
-    def _unwrapped(self, lines: Iterable[tuple[list[Token], Token]]) -> Iterator[tuple[list[Token], Token]]:
-        """Write Eq(left, right) as left = right."""
-        for line, end in lines:
-            start = 2 if len(line) > 2 and line[1].type == "EQUAL" else 0
-            called = [str(t) for t in line[start : start + 2]] in (["Eq", "("], ["Equality", "("])
-            comma = top_level(line, start + 2, "COMMA") if called else None
-            if comma is None or line[-1].type != "RPAR":
-                yield line, end
-            else:
-                equal = line[comma].update(type="EQUAL", value="=")
-                yield [*line[start + 2 : comma], equal, *line[comma + 1 : -1]], end
-
-    def _without_remark(self, line: list[Token]) -> list[Token]:
-        """Leave out words in brackets at the end of a line, "(quotient rule)"."""
-        k = len(line) - 1
-        while line and line[-1].type == "RPAR" and line[k - 1].type == "NAME":
-            k -= 1
-        words = line[k:-1]
-        said = words and line[k - 1].type == "LPAR" and k > 1 and all(t.isalpha() and len(t) > 2 for t in words)
-        return (
-            line[: k - 1] if said and not any(self._spelled(t) in self.known or self._ways(t) for t in words) else line
-        )
-
     def _label(self, line: Sequence[Token]) -> Token | None:
         """Return the left side of a line as one token if the line begins with one."""
         end = next((k for k, token in enumerate(line[:200]) if token.type == "EQUAL"), None)
         if end is None or line[0].type not in ("D_DT", "NAME", "LPAR", "LSQB", "_MATRIX"):
             return None
-        kinds = [f"NAME:{t}" if t.type == "NAME" else t.type for t in line[: end + 1] if t not in WRAPPERS]
+        kinds = [f"NAME:{t}" if t.type == "NAME" else t.type for t in line[: end + 1]]
         text = " ".join(kinds)
         if kinds[0] == "LPAR" and kinds[-2] == "RPAR" and ("COMMA" not in kinds or kinds[1] == "LSQB"):
             text = " ".join([*kinds[1:-2], "EQUAL"])  # (y3') = ... and Matrix([...]) = ...
@@ -316,8 +292,6 @@ class Words(Notation):
         transpose = name == "T" and before in ("_POWER", "LBRACE")
         if token.type != "NAME" or transpose:
             return [token]
-        if name in WRAPPERS and after == "LPAR" and name not in self.known:
-            return []
         name = self._spelled(name)
         if name in self.known or self.column(name):
             return [token.update(value=name)]

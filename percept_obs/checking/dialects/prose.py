@@ -86,13 +86,15 @@ def _line_end_for_stop(word: str) -> str:
 
 def _words(line: str, is_name: Callable[[str], bool]) -> Iterator[re.Match[str]]:
     """Yield words of a line that no formula contains: no name, and without a sign of arithmetic beside them."""
-    end = 0  # of the last such word
+    end = -1  # of the last such word
     for word in _WORD.finditer(line):
-        before, after = line[: word.start()].rstrip(), line[word.end() :].lstrip()
-        beside = before[-1:] in "+-*/^=<>&_\\" if before else False
-        beside = beside or bool(re.match(r"[-+*/^=_)}<>|]|:=|\]", after))
-        alone = len(word[0].rstrip(".")) == 1 and (before[end:].strip() or not re.match(r"[^\W\d_]{2,}|$", after))
-        if not beside and not alone and not is_name(word[0].rstrip(".")) and not _ACCENTED.fullmatch(word[0]):
+        before, after = line[: word.start()].rstrip(" "), line[word.end() :].lstrip(" ")
+        beside = before[-1:] in tuple("+-*/^=<>&_\\") or re.match(r"[-+*/^=_)}<>|\]]|:=", after)
+        if len(word[0]) == 1:  # "a" in a sentence, but not the letter a
+            following = _WORD.match(line, len(line) - len(after))
+            beside = beside or (following and is_name(following[0])) or bool(before[max(end, 0) :].strip(" ,"))
+            beside = beside or not (following or (end >= 0 and not after))
+        if not beside and not is_name(word[0].rstrip(".")) and not _ACCENTED.fullmatch(word[0]):
             end = word.end()
             yield word
 
@@ -111,7 +113,7 @@ def _formulas(line: str, is_name: Callable[[str], bool], sentence: bool) -> Iter
 
 
 def _factor(line: str, found: list[tuple[int, int]], k: int, sentence: bool) -> bool:
-    """Return True if a word may be meant as a factor, b1 speed y3: alone between operands, with no equation behind it."""
+    """Return True if a word may be meant as a factor, b1 speed y3: alone between operands, no equation behind it."""
     start, end = found[k]
     before, after = line[:start].rstrip(), line[end:].lstrip()
     following = bool(k + 1 < len(found)) and not line[end : found[k + 1][0]].strip(" ,'")
