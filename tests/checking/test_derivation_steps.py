@@ -1,4 +1,4 @@
-"""A derivation in steps is judged line by line: the first wrong line is named, and if it follows from the one before."""
+"""A derivation in steps is judged line by line: the first line is named that does not follow from the one before."""
 
 import re
 import tomllib
@@ -27,7 +27,7 @@ def written(text, slip):
 
 def step(text, slip):
     """Number of the line in which a slip is made, among those with an equation."""
-    lines = [line for line in text.splitlines() if "=" in line and "Since" not in line]
+    lines = [line for line in text.splitlines() if "=" in line]
     return 1 + next(k for k, line in enumerate(lines) if f"⟨{slip}:" in line)
 
 

@@ -24,7 +24,7 @@ def own_commands(source: Source) -> Source:
         if len(re.findall(uses, source.text)) * len(body) > LONGEST - len(source.text):
             break
         many = re.search(r"\\\d", body)
-        source = source.calls({name: body}, r"\\", "{") if many else source.sub(uses, body + " ")
+        source = source.calls({name: body}, r"\\", "{") if many else source.sub(uses, f" {body} ")
     return source
 
 
