@@ -282,7 +282,7 @@ def _by_convention(lines: list[Judged], target: Target) -> list[Judged]:
 
 def steps(text: Text, lines: Sequence[Judged], target: Target, mine: Any) -> str:
     """Say of somebody's derivation which line is the first wrong one, and if it follows from the one before."""
-    places = sorted({each.at for each in (*text.lines, *text.definitions)})
+    places = sorted({r.at for r in text.lines} | {d.at for d in text.definitions})
     if not isinstance(mine, str) or len(places) < 2:
         return ""
     rows = [mine.count("\n", 0, at) for at in places]

@@ -52,6 +52,10 @@ class Notation:
         self.plain, self.origin = source.text, source.origin
         self.bound: dict[str, sp.Symbol] = {}
 
+    def is_name(self, word: str) -> bool:
+        """Return True for a word that may be a letter or a function here."""
+        return word in self.known
+
     def refuse(self, message: str, at: Any = None) -> NoReturn:
         """Raise CannotRead at a token or a tree, or at the end of the text."""
         start = at.start_pos if isinstance(at, Token) else at.meta.start_pos if hasattr(at, "meta") else at

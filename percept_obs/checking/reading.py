@@ -137,7 +137,7 @@ class _Lines:
     def place(self, node: Any) -> int:
         """Return where a part of the tree begins in the text that was typed."""
         start = node.start_pos if isinstance(node, Token) else node.meta.start_pos
-        return self.words.origin[start] if start < len(self.words.origin) else 0
+        return self.words.origin[start] if start is not None and start < len(self.words.origin) else 0
 
     def line(self, node: Any) -> Any:
         """Return the value of a side of a line, and note the defined letters in it as used."""

@@ -256,8 +256,8 @@ def check(mine: Any, target: Any) -> Review:
     values of all sizes; the review says so, and where it is right.  A "no" is certain.  Where nothing decides, the
     verdict is "cannot tell", with the reason if it takes longer than two seconds of computing.
 
-    Of a photo of a derivation, give what Mathpix, or a chat program that is asked for LaTeX, makes of it: their output is
-    read as it is, with its delimiters, numbers and words.
+    Of a photo of a derivation, give what Mathpix, or a chat program that is asked for LaTeX, makes of it: that is read
+    as it is, with its delimiters, numbers and words.
 
     Examples
     --------
