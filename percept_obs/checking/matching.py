@@ -197,8 +197,9 @@ def _nearest(formula: sp.Basic, target: Target) -> int | None:
     if not small(formula, *(line.formula for line in target.lines)):
         return None
     terms = set(sp.Add.make_args(sp.expand(formula)))
-    shared = [len(terms & set(sp.Add.make_args(sp.expand(line.formula)))) for line in target.lines]
-    return shared.index(max(shared)) if max(shared) > len(terms) / 3 else None
+    rows = [set(sp.Add.make_args(sp.expand(line.formula))) for line in target.lines]
+    shared = [len(terms & row) / max(len(terms), len(row)) for row in rows]
+    return shared.index(max(shared)) if max(shared) > 1 / 3 else None
 
 
 def _refuse_another_name(name: str, target: Target) -> None:
