@@ -272,6 +272,22 @@ def _squares(polynomial: sp.Expr) -> list[sp.Expr]:
     return bases if rest == 0 else []
 
 
+def square_apart(mine: sp.Expr, true: sp.Expr) -> tuple[tuple[int, ...], sp.Expr, sp.Expr] | None:
+    """Return the only square of a sum of squares that differs: the place of its base, the base, and the true one."""
+    squares = [(k, e.base) for k, e in enumerate(mine.args) if e.is_Pow and e.exp == 2] if mine.is_Add else []
+    bases = _squares(true) if rational(true) and small(true) else []
+    if len(squares) != len(getattr(mine, "args", ())) or len(squares) != len(bases):
+        return None
+    mine_left = [(k, base) for k, base in squares if not any(proportional(base, other) for other in bases)]
+    true_left = [base for base in bases if not any(proportional(base, other) for _, other in squares)]
+    if len(mine_left) != 1 or len(true_left) != 1:
+        return None
+    ((k, base),), (other,) = mine_left, true_left
+    terms = set(sp.Add.make_args(sp.expand(base)))
+    shared = [len(terms & set(sp.Add.make_args(sp.expand(sign * other)))) for sign in (1, -1)]
+    return (k, 0), base, other if shared[0] >= shared[1] else -other
+
+
 def _positive(polynomial: sp.Expr) -> bool:
     """Return True if all terms are positive, one of them a number: 1 + y1^2."""
     terms = sp.Poly(polynomial).terms()

@@ -9,10 +9,11 @@ from itertools import chain
 import numpy as np
 import sympy as sp
 
+from percept_obs.checking.deciding import square_apart
 from percept_obs.checking.differences import Difference, compared
 from percept_obs.checking.factors import bracket, terms_lacking_a_factor, terms_of_a_forgotten_bracket
 from percept_obs.checking.limits import left
-from percept_obs.checking.lines import VALUE, ZEROS
+from percept_obs.checking.lines import VALUE, ZEROS, Line
 from percept_obs.checking.places import at, leaves_apart
 from percept_obs.checking.search import KINDS_IN_ALL_TERMS, Search, close
 from percept_obs.checking.slips import MISTAKES, Slip, factored, is_symbol, siblings_in, slips_in
@@ -51,6 +52,12 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
     No step is blamed that would have spoiled the lines that are right as well.
     """
     line = target.lines[row]
+    if line.kind == ZEROS and (parts := square_apart(mine, line.formula)):  # of a sum of squares the one that differs
+        place, part, true = parts
+        inner = explained(part, 0, Target((Line("", true),), frozenset(target.letters.values())), {})
+        if inner.slips and inner.whole != MANY:
+            slips = tuple(replace(slip, path=(*place, *slip.path)) for slip in inner.slips)
+            return Explanation(slips, bracket=inner.bracket)
     search = Search(mine, line, frozenset(target.letters.values()), time.thread_time() + min(SECONDS, 0.6 * left()))
     if not search.places:
         return Explanation(whole=NO_VALUES)

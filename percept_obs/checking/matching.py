@@ -36,7 +36,7 @@ STRICT = "the two sides are never equal: write < or >"
 WEAK = "the two sides may be equal: write <= or >="
 LONGEST_LIST = 4
 """Most letters that a note lists to write a formula with; if there are more, it lists those to write out."""
-NOT_ZERO = "= 0 says where the condition fails: it holds where this is not 0, so write > 0 or != 0"
+NOT_ZERO = "where this is 0 the condition fails: write > 0 or != 0"
 ZERO = "this is to be 0, and not to differ from it: write = 0"
 NEGATED = "all entries of your matrix have the other sign"
 TRANSPOSED = "your matrix is the transpose of the one asked for"
@@ -246,7 +246,8 @@ def _scalar(formula: sp.Basic, target: Target, row: int) -> sp.Expr:
     """Return a line as an expression, comparable with the target's line."""
     kind = target.lines[row].kind
     if isinstance(formula, sp.And | sp.Or) or (kind == ZEROS and isinstance(formula, Relational)):
-        return condition(formula if not isinstance(formula, sp.Eq) else sp.Ne(*formula.args, evaluate=False))
+        weak = isinstance(formula, sp.Eq | sp.GreaterThan | sp.LessThan)
+        return condition(sp.Ne(*formula.args, evaluate=False) if weak else formula)
     letter = next((s for s in formula.free_symbols if key(s.name) == target.lines[row].key), None)
     if kind == VALUE and letter and isinstance(formula, sp.Eq):  # 2 x = 4 y, where x = 2 y is asked for
         gap = formula.lhs - formula.rhs

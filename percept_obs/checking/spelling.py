@@ -96,7 +96,7 @@ def other_names(name: str) -> list[str]:
     found.append(re.sub(r"^(k\d|xf|R|Omegag)bar$|^(xO)q$|^(I)n$", r"\1\2\3", name))  # of the papers
     if rate := re.fullmatch(r"[dD]([A-Za-z]+?\d?[a-z]*?)(?:dt(\d?))?", name):  # dy3, dy3dt, dydt3
         found.append(key(f"{rate[1]}{rate[2] or ''}dot"))
-    found.append(re.sub(r"^([a-z])h(\d)", r"\1\2hat", re.sub(r"^[a-z](\d)tilde", r"e\1", name)))
+    found.append(re.sub(r"^([a-z])(?:h(\d)|(\d)h)(?=dot|$)", r"\1\2\3hat", re.sub(r"^[a-z](\d)tilde", r"e\1", name)))
     found += [name[:1].lower() + name[1:]] * bool(re.fullmatch(r"[A-Z]\d\d", name))  # A(3,1) of MATLAB is a31
     found += {"omegatimes": ["wcross"], "omegacross": ["wcross"], "df": ["J"], "dfdy": ["J"], "dfdx": ["J"]}.get(
         name, []

@@ -30,6 +30,7 @@ def own_commands(source: Source) -> Source:
 
 def rows(source: Source) -> Source:
     """Return a text with commas between entries of matrices that are apart by blanks alone."""
+    source = source.sub(r"\[[^\[\]]*\n[^\[\]]*\]", lambda f: re.sub(r"(?<![;,+*/^=(\[-])[ \t]*\n\s*(?!\])", "; ", f[0]))
     return source.sub(r"\[([^\[\],()]*[;\s][^\[\],()]*)\]", _rows)
 
 
