@@ -82,6 +82,9 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
 
 def _found(search: Search, target: Target) -> tuple[tuple[Slip, ...], str]:
     """Return the plainest changes that mend a line, and the convention that it follows besides."""
+    # of zeros each single change takes long to compare
+    if search.line.kind == ZEROS and (everywhere := change_of_all_terms(search)):
+        return (everywhere,), ""
     one = search.single()
     # where all signs of a sum are turned, as by two letters swapped, the letters say more
     weak = one and (one.kind == "replaced" or (one.kind == "sign" and not one.path and one.before.is_Add))

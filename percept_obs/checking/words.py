@@ -258,7 +258,7 @@ class Words(Notation):
                 told = (f"the rate of {rate[1]}", "a letter of your own")
                 self.refuse(two_meanings(told, f"for the rate write {rate[1]}' ="), line[0])
             if any(accent in name for accent in ("dot", "hat", ",")) or name in FUNCTIONS:
-                there = ", ".join(re.sub("dot$", "'", each) for each in self.labels if each not in LABELS)
+                there = ", ".join(re.sub("dot$", "'", each) for each in sorted(self.labels) if each not in LABELS)
                 asked = f"asked for are {there}" if there else "one formula is asked for, so leave the left side out"
                 self.refuse(f"the line {re.sub('dot$', chr(39), name)} is not asked for here; {asked}", line[0])
             self.known.add(name)

@@ -35,7 +35,9 @@ def rewritten(source: Source, known: Callable[[str], bool]) -> Source:
     text = re.sub(r"(?<!\\)\\\n", "  ", _REMARK.sub(_blanks, source.text))
     lines = [_bare(line, is_name) for line in text.split("\n")]
     count = sum(len(list(_words(line, is_name))) for line in lines)
-    return Source("\n".join("".join(_formulas(line, is_name, count > 1)) for line in lines), source.origin)
+    related = bool(re.search(r"[=<>]|\\(neq?|[lg]eq?)(?![A-Za-z])", text))
+    kept = ("".join(_formulas(line, is_name, count > 1, related)) for line in lines)
+    return Source("\n".join(kept), source.origin)
 
 
 def _blanks(found: re.Match[str] | str) -> str:
@@ -100,7 +102,7 @@ def _words(line: str, is_name: Callable[[str], bool]) -> Iterator[re.Match[str]]
             yield word
 
 
-def _formulas(line: str, is_name: Callable[[str], bool], sentence: bool) -> Iterator[str]:
+def _formulas(line: str, is_name: Callable[[str], bool], sentence: bool, related: bool) -> Iterator[str]:
     """Yield the parts of a line: formulas, each on a line of its own, and blanks for the words between them."""
     found = [(each.start(), each.end()) for each in _words(line, is_name)]
     found = [span for k, span in enumerate(found) if not _factor(line, found, k, sentence)]
@@ -109,7 +111,9 @@ def _formulas(line: str, is_name: Callable[[str], bool], sentence: bool) -> Iter
         return
     for (_, start), (end, after) in pairwise([(0, 0), *found, (len(line), len(line))]):
         part = line[start:end]
-        yield _blanks(part) if not _FORMULA.search(part) else part
+        # "y1 is measured" says something beside an equation; a number may be meant as a factor
+        says = related and re.search(r"[^\W\d_]", part)
+        yield part if _FORMULA.search(part) or (re.search(r"\d", part) and not says) else _blanks(part)
         yield "\n" * (after > end) + " " * (after - end - 1)
 
 
