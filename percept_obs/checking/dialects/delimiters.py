@@ -30,8 +30,10 @@ def delimited(text: str) -> str:
     ends, starts = [0, *(end for _, end in inside)], [*(start for start, _ in inside), len(text)]
     between = [text[end:start] for end, start in zip(ends, starts, strict=True)]
     whole = [text[start:end] for start, end in inside]
+    blank = list(text)
     for start, end in marks:
-        text = text[:start] + " " * (end - start) + text[end:]
+        blank[start:end] = " " * (end - start)
+    text = "".join(blank)
     if not inside or any(_RELATION.search(part) or _SIGN_ALONE.fullmatch(part) for part in between):
         return text
     related = any(_RELATION.search(part) for part in whole)

@@ -21,7 +21,7 @@ _TEXT_COMMAND = re.compile(r"\\(text|textrm|mbox|mathrm)\s*\{([^{}]*)\}")
 _WORDS_OF_CASES = re.compile(r"\s*(for|if|when|otherwise|else)[,.]?\s*|\s*\w+\s*")
 _FORMULA = re.compile(r"[+*/^=<>()\[\]{}&\\]|(^|\s)-|-(\s|$)|[\d_']\w*\s+\w*[\d_']")
 _EQUATION = re.compile(r"[\s\\\w{}'_^()\u0300-\u036f,/.]*?(:?=|<|>|\\[ngl]e)")
-_EITHER = r"(?:\\text\s*\{\s*)?(?<![\w\\])(?:or|oder|ou)(?!\w)(?:\s*\})?(?=[^\n]*(?:\\neq?|!=|>))"
+_EITHER = r"(?:\\text\s*\{\s*)?(?<![\w\\])(?:or|oder|ou)(?!\w)(?:\s*\})?(?=[^\n]{0,300}(?:\\neq?|!=|>))"
 
 
 def rewritten(source: Source, known: Callable[[str], bool]) -> Source:
