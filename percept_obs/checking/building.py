@@ -12,6 +12,7 @@ from lark import Token, Tree
 
 from percept_obs.checking.deciding import MATRICES, letters_in_a_row
 from percept_obs.checking.limits import extent, refused, too_tall
+from percept_obs.checking.points import key
 from percept_obs.checking.refusing import two_meanings
 from percept_obs.checking.tokens import FUNCTIONS
 from percept_obs.checking.words import Words
@@ -202,6 +203,15 @@ class Builder:
         if extent(base).degree * abs(exponent) > LARGEST_DEGREE or digits * abs(exponent) > LONGEST_INTEGER:
             self.refuse("this power is too large to be compared; there must be a smaller way to write it", tree)
         return base**exponent
+
+    def _rate(self, tree: Tree, sign: Token, inner: Any) -> sp.Expr:
+        """Return the rate of an expression, d/dt (1/Z), by the rates of its letters; others are constant."""
+        value = self._scalar(inner)
+        names = {s: key(f"{s.name}dot") for s in value.free_symbols}
+        known = (*self.letters, *self.words.labels)
+        return sp.Add(
+            *(value.diff(s) * self._letter(Token("NAME", name)) for s, name in names.items() if name in known)
+        )
 
     def _exponential(self, tree: Tree, base: Token, exponent: Any) -> sp.Expr:
         return self._applied(sp.exp, exponent)

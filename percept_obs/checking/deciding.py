@@ -128,8 +128,10 @@ def decided(one: sp.Expr, other: sp.Expr) -> Decision:
     # without such parts, different values at the secret point mean different functions
     if found is False and not one.has(*_NUMBERS) and not other.has(*_NUMBERS):
         return Decision(False)
-    # where formulas jump they may be equal on all branches and differ on the borders, which places can show
-    if found and not one.has(*_JUMPS) and not other.has(*_JUMPS):
+    # where formulas jump they may be equal on all branches and differ on the borders, which places can show;
+    # logarithms and roots of different parts may have values at different places
+    same_parts = _inside(one) == _inside(other)
+    if found and same_parts and not one.has(*_JUMPS) and not other.has(*_JUMPS):
         return Decision(True)
     compared = sample(one, other, thorough=found is None and extent(one).parts + extent(other).parts < FEW)
     if compared.different:
@@ -137,8 +139,13 @@ def decided(one: sp.Expr, other: sp.Expr) -> Decision:
     # proof and places disagree, or too few places have values: nothing can be told
     if found is False or len(compared.same) < POINTS:
         return Decision(found or None)
-    where = "" if found else region(compared.same, compared.nowhere, one, other)
+    where = "" if found and same_parts else region(compared.same, compared.nowhere, one, other)
     return Decision(True, bool(found), where)
+
+
+def _inside(formula: sp.Expr) -> set[sp.Basic]:
+    """Return what stands in logarithms and roots, which have no value everywhere."""
+    return {p.args[0] for p in formula.atoms(sp.log, sp.Pow) if isinstance(p, sp.log) or p.exp.is_integer is False}
 
 
 _JUMPS = (sp.sign, sp.Heaviside, sp.Piecewise, sp.floor, sp.ceiling)
@@ -195,6 +202,9 @@ def same_zeros(one: sp.Expr, other: sp.Expr, nonzero: Iterable[sp.Symbol] = ()) 
         return True
     if other == 0:
         return False  # which vanishes everywhere
+    one, other = (_squared(e) for e in (one, other))
+    if proportional(one, other):
+        return True
     first, second = (_vanishing(e, set(nonzero)) for e in (one, other))
     if first is None or second is None:
         return None
@@ -202,9 +212,35 @@ def same_zeros(one: sp.Expr, other: sp.Expr, nonzero: Iterable[sp.Symbol] = ()) 
     alone += [g for g in second if not any(_vanish_together(f, g) for f in first)]
     if not alone:
         return True
+    if any(_apart(*pair) for pair in ((one, other), (other, one))):
+        return False
     # a factor that takes both signs vanishes where no other one does; one that does not may vanish nowhere
     values = ([Place(at)(polynomial) for at in places(polynomial)] for polynomial in alone)
     return False if any(min(found) < 0 < max(found) for found in values) else None
+
+
+def _squared(expression: sp.Expr) -> sp.Expr:
+    """Return a polynomial with the same zeros for a root of one, or for a sum of absolute values of some."""
+    if expression.is_Pow and expression.exp == sp.S.Half:
+        return _squared(expression.base)
+    terms = [term.as_coeff_Mul() for term in sp.Add.make_args(expression)]
+    if all(c > 0 and isinstance(e, sp.Abs) for c, e in terms):
+        return sp.Add(*(e.args[0] ** 2 for _, e in terms))
+    return expression
+
+
+def _apart(one: sp.Expr, other: sp.Expr) -> bool:
+    """Return True if a sum of squares is surely zero at a point where another expression is not."""
+    at: dict[sp.Symbol, sp.Expr] = {}
+    for base in _squares(one):
+        base = base.subs(at)
+        letter = next((s for s in sorted(base.free_symbols, key=str) if base.diff(s, 2) == 0), None)
+        if letter is None:
+            return False
+        solved = {letter: sp.cancel(-base.subs(letter, 0) / base.diff(letter))}
+        at = {s: e.subs(solved) for s, e in at.items()} | solved
+    value = other.subs(at)
+    return bool(at) and rational(value) and bool(sp.together(value) != 0) and ratio(value, sp.S.One) != 0
 
 
 def _vanishing(expression: sp.Expr, nonzero: set[sp.Symbol]) -> list[sp.Expr] | None:
@@ -234,6 +270,22 @@ def _squares(polynomial: sp.Expr) -> list[sp.Expr]:
             bases.append(letter + parts[1] / (2 * parts[0]))
             rest = sp.expand(parts[2] - parts[1] ** 2 / (4 * parts[0]))
     return bases if rest == 0 else []
+
+
+def square_apart(mine: sp.Expr, true: sp.Expr) -> tuple[tuple[int, ...], sp.Expr, sp.Expr] | None:
+    """Return the only square of a sum of squares that differs: the place of its base, the base, and the true one."""
+    squares = [(k, e.base) for k, e in enumerate(mine.args) if e.is_Pow and e.exp == 2] if mine.is_Add else []
+    bases = _squares(true) if rational(true) and small(true) else []
+    if len(squares) != len(getattr(mine, "args", ())) or len(squares) != len(bases):
+        return None
+    mine_left = [(k, base) for k, base in squares if not any(proportional(base, other) for other in bases)]
+    true_left = [base for base in bases if not any(proportional(base, other) for _, other in squares)]
+    if len(mine_left) != 1 or len(true_left) != 1:
+        return None
+    ((k, base),), (other,) = mine_left, true_left
+    terms = set(sp.Add.make_args(sp.expand(base)))
+    shared = [len(terms & set(sp.Add.make_args(sp.expand(sign * other)))) for sign in (1, -1)]
+    return (k, 0), base, other if shared[0] >= shared[1] else -other
 
 
 def _positive(polynomial: sp.Expr) -> bool:

@@ -1,5 +1,6 @@
 """Explain a wrong formula: the slip, the term in which it is, the step in which it happened."""
 
+import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,10 +9,11 @@ from itertools import chain
 import numpy as np
 import sympy as sp
 
+from percept_obs.checking.deciding import square_apart
 from percept_obs.checking.differences import Difference, compared
 from percept_obs.checking.factors import bracket, terms_lacking_a_factor, terms_of_a_forgotten_bracket
 from percept_obs.checking.limits import left
-from percept_obs.checking.lines import VALUE, ZEROS
+from percept_obs.checking.lines import VALUE, ZEROS, Line
 from percept_obs.checking.places import at, leaves_apart
 from percept_obs.checking.search import KINDS_IN_ALL_TERMS, Search, close
 from percept_obs.checking.slips import MISTAKES, Slip, factored, is_symbol, siblings_in, slips_in
@@ -50,6 +52,12 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
     No step is blamed that would have spoiled the lines that are right as well.
     """
     line = target.lines[row]
+    if line.kind == ZEROS and (parts := square_apart(mine, line.formula)):  # of a sum of squares the one that differs
+        place, part, true = parts
+        inner = explained(part, 0, Target((Line("", true),), frozenset(target.letters.values())), {})
+        if inner.slips and inner.whole != MANY:
+            slips = tuple(replace(slip, path=(*place, *slip.path)) for slip in inner.slips)
+            return Explanation(slips, bracket=inner.bracket)
     search = Search(mine, line, frozenset(target.letters.values()), time.thread_time() + min(SECONDS, 0.6 * left()))
     if not search.places:
         return Explanation(whole=NO_VALUES)
@@ -74,6 +82,9 @@ def explained(mine: sp.Expr, row: int, target: Target, right: Mapping[int, sp.Ex
 
 def _found(search: Search, target: Target) -> tuple[tuple[Slip, ...], str]:
     """Return the plainest changes that mend a line, and the convention that it follows besides."""
+    # of zeros each single change takes long to compare
+    if search.line.kind == ZEROS and (everywhere := change_of_all_terms(search)):
+        return (everywhere,), ""
     one = search.single()
     # where all signs of a sum are turned, as by two letters swapped, the letters say more
     weak = one and (one.kind == "replaced" or (one.kind == "sign" and not one.path and one.before.is_Add))
@@ -174,7 +185,9 @@ def _said(name: str, slip: Slip) -> str:
 
 def plain(e: sp.Basic) -> str:
     """Return an expression as it may be typed."""
-    return str(e).replace("**", "^").replace("*", " ")
+    text = str(e).replace("**", "^").replace("*", " ")
+    text = re.sub(r"\\int\\limits_\{(.*?)\}\^\{(.*?)\} (.*?)\\, d\\?(\w+)", r"int_\1^\2 \3 d\4", text)
+    return re.sub(r"\b([A-Za-z]\w*?)inv_(\d+)", r"(\1^-1)_\2", re.sub(r"[{}\\]", "", text) if "int_" in text else text)
 
 
 def wrong_terms(found: Explanation, mine: sp.Expr) -> list[tuple[tuple[int, ...], sp.Expr]]:

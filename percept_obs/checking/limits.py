@@ -85,7 +85,10 @@ class _Watch:
     """
 
     def __init__(self, seconds: float) -> None:
-        self.thread, self.lock, self.done = threading.get_ident(), threading.Lock(), threading.Event()
+        # no Event: if the exception came while it is set, its own lock would stay taken, and the next call would hang
+        self.thread, self.lock, self.running = threading.get_ident(), threading.Lock(), threading.Lock()
+        self.running.acquire()
+        self.done = False
         own = getattr(time, "pthread_getcpuclockid", None)  # other systems cannot read the clock of another thread
         self.clock = own(self.thread) if own else None
         self.end = self.until = self.now() + seconds
@@ -109,16 +112,18 @@ class _Watch:
 
     def stop(self) -> None:
         """Watch no longer; nothing is raised afterwards."""
+        self.done = True
         with self.lock:
-            self.done.set()
             self.send(None)
+        if self.running.locked():
+            self.running.release()
         _limits_of_thread.watch = None
 
     def wait(self) -> None:
         """Wait for the end, in a thread of its own."""
-        while not self.done.wait(max(self.until - self.now(), 0.001)):
+        while not self.running.acquire(timeout=max(self.until - self.now(), 0.001)):
             with self.lock:
-                if self.now() > self.until and not self.done.is_set():
+                if self.now() > self.until and not self.done:
                     self.send(ctypes.py_object(_Over))
 
     def send(self, error: Any) -> None:

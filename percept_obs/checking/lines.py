@@ -28,7 +28,7 @@ class Line:
     name: str
     formula: sp.Expr
     kind: str = VALUE
-    strict: bool = False  # of an inequality: < rather than <=
+    strict: bool = False  # of an inequality: < rather than <=; of zeros: not zero rather than zero
 
     @property
     def key(self) -> str:
@@ -38,7 +38,7 @@ class Line:
     @property
     def whole(self) -> str:
         """Name, or that of the matrix of which the line is an entry: "S" for "S, row 2"."""
-        return self.name.partition(", ")[0] if re.search(r", (row|entry) \d+$", self.name) else self.name
+        return self.name.partition(", ")[0] if re.search(r", (row|entry) [\d(), ]+$", self.name) else self.name
 
 
 def typed(name: str) -> str:
@@ -55,7 +55,7 @@ def lines_of(name: str, formula: sp.Basic) -> list[Line]:
     if isinstance(formula, Relational):
         return relation_lines(formula)
     if isinstance(formula, sp.And | sp.Or):
-        return [Line("", condition(formula), ZEROS)]
+        return [Line("", condition(formula), ZEROS, strict=True)]
     return [Line(name, formula)]
 
 
@@ -74,7 +74,7 @@ def relation_lines(relation: Relational) -> list[Line]:
     if isinstance(relation, sp.Eq | sp.Ne):
         named = isinstance(relation, sp.Eq) and left.is_Symbol
         if right == 0 and not named:
-            return [Line("", left, ZEROS)]
+            return [Line("", left, ZEROS, strict=isinstance(relation, sp.Ne))]
         name = primed(left.name) if named else ""
         return [Line(name, right) if named else Line("", left - right, EQUATION)]
     return [Line("", relation.gts - relation.lts, INEQUALITY, strict=_strict(relation))]

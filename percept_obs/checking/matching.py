@@ -4,14 +4,16 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Any
 
 import sympy as sp
 from sympy.core.relational import Relational
 
-from percept_obs.checking.deciding import Decision, decided, on_sides, proportional, same, same_zeros
+from percept_obs.checking.deciding import Decision, decided, on_sides, proportional, same, same_zeros, small
 from percept_obs.checking.limits import TooLong, limited
 from percept_obs.checking.lines import EQUATION, INEQUALITY, VALUE, ZEROS, condition, primed, relation_lines
-from percept_obs.checking.reading import Reading
+from percept_obs.checking.points import key
+from percept_obs.checking.reading import Reading, Text
 from percept_obs.checking.target import Target
 
 
@@ -34,20 +36,27 @@ STRICT = "the two sides are never equal: write < or >"
 WEAK = "the two sides may be equal: write <= or >="
 LONGEST_LIST = 4
 """Most letters that a note lists to write a formula with; if there are more, it lists those to write out."""
+NOT_ZERO = "where this is 0 the condition fails: write > 0 or != 0"
+ZERO = "this is to be 0, and not to differ from it: write = 0"
+NEGATED = "all entries of your matrix have the other sign"
 TRANSPOSED = "your matrix is the transpose of the one asked for"
+SAID = {INEQUALITY: (STRICT, WEAK), ZEROS: (NOT_ZERO, ZERO)}
+"""What is wrong with a weak sign where a strict one is asked for, and the other way round."""
 
 
 @dataclass(frozen=True, eq=False)
 class Judged:
     """My line, the target's row that it should be, and its verdict.
 
-    The note says which convention, which earlier line was wrong, or what is wrong with all lines.
+    The note says which convention, which earlier line was wrong, or what is wrong with all lines; `at` is where the
+    line stands in the text, -1 if it was none.
     """
 
     row: int
     mine: sp.Expr
     verdict: Verdict
     note: str = ""
+    at: int = -1
 
 
 def judged(readings: Sequence[Reading], target: Target) -> tuple[Judged, ...]:
@@ -55,6 +64,8 @@ def judged(readings: Sequence[Reading], target: Target) -> tuple[Judged, ...]:
     readings, known = _with_definitions_put_in(readings, target)
     assigned = _assigned(readings, target)
     lines = [_judged(formula, target, row, strict) for row, formula, strict in assigned]
+    if len(lines) == len(readings):
+        lines = [replace(line, at=r.at) for line, r in zip(lines, readings, strict=True)]
     found = _carried(_by_convention(_turned(lines, readings, assigned, target), target), target)
     return tuple(_noted(line, known) if line.verdict == Verdict.RIGHT else line for line in found)
 
@@ -85,7 +96,9 @@ def _is_known(reading: Reading, target: Target) -> bool:
     letter = target.letters.get(reading.name)
     named = letter is not None and reading.name not in target.rows and reading.name not in target.blocks
     used = set(target.relations) & reading.formula.free_symbols
-    return bool(named and used and same(reading.formula.xreplace(dict(target.relations)), letter))
+    return bool(
+        named and (used or reading.formula == letter) and same(reading.formula.xreplace(dict(target.relations)), letter)
+    )
 
 
 def _noted(line: Judged, note: str) -> Judged:
@@ -99,8 +112,8 @@ def _judged(mine: sp.Expr, target: Target, row: int, strict: bool | None) -> Jud
     except TooLong as error:
         return Judged(row, mine, Verdict.CANNOT_TELL, str(error))
     verdict, line = _as_verdict(found), target.lines[row]
-    if verdict == Verdict.RIGHT and line.kind == INEQUALITY and strict is not None and strict != line.strict:
-        return Judged(row, mine, Verdict.WRONG, STRICT if line.strict else WEAK)
+    if verdict == Verdict.RIGHT and line.kind in SAID and strict is not None and strict != line.strict:
+        return Judged(row, mine, Verdict.WRONG, SAID[line.kind][0 if line.strict else 1])
     return Judged(row, mine, verdict, found.words)
 
 
@@ -166,12 +179,27 @@ def _assigned(readings: Sequence[Reading], target: Target) -> list[tuple[int, sp
             )
         elif len(unnamed) == len(nameless):
             row, start = nameless[start], start + 1
+        elif not name and (near := _nearest(formula, target)) is not None:
+            row = near
         else:
             what = f"the line {name}" if name else "a line without a name"
             raise ValueError(f"{what} is none of those asked for: {_asked(target)}; begin it with its name and =")
         strict = relation_lines(formula)[0].strict if isinstance(formula, Relational) else None
         assigned.append((row, _scalar(formula, target, row), strict))
     return assigned
+
+
+def _nearest(formula: sp.Basic, target: Target) -> int | None:
+    """Return the row that a line without a name equals, or with which it shares most terms; None if with none."""
+    if not isinstance(formula, sp.Expr):
+        fits = [k for k, line in enumerate(target.lines) if line.kind in SAID]
+        return next((k for k in fits if _verdict(_scalar(formula, target, k), target, k) == Verdict.RIGHT), None)
+    if not small(formula, *(line.formula for line in target.lines)):
+        return None
+    terms = set(sp.Add.make_args(sp.expand(formula)))
+    rows = [set(sp.Add.make_args(sp.expand(line.formula))) for line in target.lines]
+    shared = [len(terms & row) / max(len(terms), len(row)) for row in rows]
+    return shared.index(max(shared)) if max(shared) > 1 / 3 else None
 
 
 def _refuse_another_name(name: str, target: Target) -> None:
@@ -207,9 +235,10 @@ def _turned(
         or not any(line.verdict == Verdict.WRONG for line in lines)
     ):
         return lines
-    entries = zip(readings[0].formula.T, (row for row, *_ in assigned), strict=True)
-    if all(_verdict(entry, target, row) == Verdict.RIGHT for entry, row in entries):
-        return [replace(line, note=TRANSPOSED) if line.verdict == Verdict.WRONG else line for line in lines]
+    for note, matrix in ((TRANSPOSED, readings[0].formula.T), (NEGATED, -readings[0].formula)):
+        entries = zip(matrix, (row for row, *_ in assigned), strict=True)
+        if all(_verdict(entry, target, row) == Verdict.RIGHT for entry, row in entries):
+            return [replace(line, note=note) if line.verdict == Verdict.WRONG else line for line in lines]
     return lines
 
 
@@ -217,7 +246,14 @@ def _scalar(formula: sp.Basic, target: Target, row: int) -> sp.Expr:
     """Return a line as an expression, comparable with the target's line."""
     kind = target.lines[row].kind
     if isinstance(formula, sp.And | sp.Or) or (kind == ZEROS and isinstance(formula, Relational)):
-        return condition(formula if not isinstance(formula, sp.Eq) else sp.Ne(*formula.args, evaluate=False))
+        weak = isinstance(formula, sp.Eq | sp.GreaterThan | sp.LessThan)
+        return condition(sp.Ne(*formula.args, evaluate=False) if weak else formula)
+    letter = next((s for s in formula.free_symbols if key(s.name) == target.lines[row].key), None)
+    if kind == VALUE and letter and isinstance(formula, sp.Eq):  # 2 x = 4 y, where x = 2 y is asked for
+        gap = formula.lhs - formula.rhs
+        slope = gap.diff(letter)
+        if slope != 0 and not slope.has(letter):
+            return -gap.subs(letter, 0) / slope
     if isinstance(formula, Relational):
         (line,) = relation_lines(formula)
         if line.kind not in (kind, VALUE) and kind in (EQUATION, INEQUALITY, VALUE):
@@ -244,6 +280,30 @@ def _by_convention(lines: list[Judged], target: Target) -> list[Judged]:
                 for line in lines
             ]
     return lines
+
+
+def steps(text: Text, lines: Sequence[Judged], target: Target, mine: Any) -> str:
+    """Say of somebody's derivation which line is the first wrong one, and if it follows from the one before."""
+    places = sorted({r.at for r in text.lines} | {d.at for d in text.definitions})
+    if not isinstance(mine, str) or len(places) < 2:
+        return ""
+    rows = [mine.count("\n", 0, at) for at in places]
+    several = sorted(set(rows)) if len(set(rows)) > 1 else []
+    number = {
+        at: several.index(row) + 1 if several else k for k, (at, row) in enumerate(zip(places, rows, strict=True), 1)
+    }
+    known = {key(s.name): e for s, e in target.relations.items()}
+    for d in text.definitions:
+        if d.name in known and same(d.formulas[-1].xreplace(dict(target.relations)), known[d.name]) is False:
+            return f"in line {number[d.at]} your {primed(d.name)} is not what is known of it"
+    for k, line in enumerate(lines):
+        before = [other for other in lines[:k] if other.row == line.row and other.verdict == Verdict.RIGHT]
+        if line.verdict == Verdict.WRONG and before and line.at >= 0:
+            here, there = number.get(line.at, k + 1), number.get(before[-1].at, k)
+            carried = [each for each in lines[k + 1 :] if each.row == line.row]
+            rest = "; from there on it is right" * bool(carried and {e.verdict for e in carried} == {Verdict.CARRIED})
+            return f"line {here} does not follow from line {there}{rest}"
+    return ""
 
 
 def _carried(lines: list[Judged], target: Target) -> Iterator[Judged]:

@@ -7,11 +7,13 @@ from typing import Any, NoReturn
 import sympy as sp
 from lark import Token, UnexpectedCharacters
 
+from percept_obs.checking.dialects import plain
 from percept_obs.checking.points import key
 from percept_obs.checking.refusing import CLOSING, CannotRead, about_character, two_meanings
-from percept_obs.checking.spelling import laid_out, lexed, spelled
+from percept_obs.checking.spelling import lexed
 from percept_obs.checking.tokens import (
     AROUND,
+    OF_SEVERAL,
     OPENING,
     SUMMAND_ENDS,
     Functions,
@@ -39,15 +41,20 @@ class Notation:
     """A text with the letters, labels and functions that are known, and what its notation stands for."""
 
     def __init__(self, text: str, letters: Mapping[str, Any], labels: Iterable[str], functions: Functions) -> None:
-        self.text, self.letters, self.labels, self.functions = text, letters, set(labels), functions
+        self.text, self.letters, self.labels, self.functions = text, letters, set(labels), {**OF_SEVERAL, **functions}
         self.known = {*letters, *self.labels}
         if len(text) > LONGEST:
             raise CannotRead(text, LONGEST, f"the formula has {len(text)} characters; at most {LONGEST}")
-        self.plain, self.origin = spelled(text)
         for pattern, what in _TOO_LONG.items():
-            if found := re.search(pattern, self.plain):
-                self.refuse(f"{what}; write * between letters", found.start())
+            if found := re.search(pattern, text):
+                raise CannotRead(text, found.start(), f"{what}; write * between letters")
+        source, self.dialects = plain(text, self.is_name)
+        self.plain, self.origin = source.text, source.origin
         self.bound: dict[str, sp.Symbol] = {}
+
+    def is_name(self, word: str) -> bool:
+        """Return True for a word that may be a letter or a function here."""
+        return word in self.known
 
     def refuse(self, message: str, at: Any = None) -> NoReturn:
         """Raise CannotRead at a token or a tree, or at the end of the text."""
@@ -57,7 +64,7 @@ class Notation:
 
     def _raw(self) -> list[Token]:
         try:
-            raw = [*lexed(laid_out(self.plain)), Token("END", "", len(self.plain), end_pos=len(self.plain))]
+            raw = [*lexed(self.plain), Token("END", "", len(self.plain), end_pos=len(self.plain))]
         except UnexpectedCharacters as error:
             position = self.origin[error.pos_in_stream or 0]
             raise CannotRead(self.text, position, about_character(self.text[position])) from None
@@ -234,30 +241,6 @@ class Notation:
                 opened.append(token.type)
             kind = "_NORM" if token.type == "NORM_BAR" else "_BAR"
             out.append(token.update(type=f"{kind}_{'CLOSE' if closes else 'OPEN'}"))
-        return out
-
-    def _fractions(self, tokens: list[Token]) -> list[Token]:
-        r"""Put the digits of \frac12 in braces, and read a root before a bracket as a function."""
-        out: list[Token] = []
-        wanted = 0
-        for k, token in enumerate(tokens):
-            if token.type == "_ROOT" and tokens[k + 1].type == "LPAR":
-                token = token.update(type="FUNCTION", value="sqrt")
-            if token.type == "_FRACTION":
-                wanted = 2
-            # TeX takes one digit for each part of a fraction: \frac12 is 1/2
-            elif wanted and token.type == "NUMBER" and token.isdigit() and len(token) <= wanted:
-                for digit in token:
-                    out += [
-                        token.update(type="LBRACE", value="{"),
-                        token.update(value=digit),
-                        token.update(type="RBRACE", value="}"),
-                    ]
-                wanted -= len(token)
-                continue
-            elif wanted != 1 or token.type != "LBRACE":
-                wanted = 0
-            out.append(token)
         return out
 
     def _arguments(self, tokens: list[Token]) -> list[Token]:

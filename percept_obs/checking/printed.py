@@ -35,7 +35,13 @@ def matrix_target(relations: Iterable[Relational]) -> Target:
     for relation in relations:
         left, right = relation.args
         if isinstance(relation, sp.Eq) and isinstance(left, sp.MatrixSymbol):
-            rows = [Line(f"{primed(left.name)}, row {k}", e) for k, e in enumerate(in_entries(right, matrices), 1)]
+            entries = in_entries(right, matrices)
+            columns = getattr(entries, "cols", 1)
+            places = [
+                f"entry ({k // columns + 1}, {k % columns + 1})" if columns > 1 else f"row {k + 1}"
+                for k in range(len(entries))
+            ]
+            rows = [Line(f"{primed(left.name)}, {place}", e) for place, e in zip(places, entries, strict=True)]
             name = key(left.name)
             blocks[f"{name}, another form" if name in blocks else name] = tuple(
                 range(len(lines), len(lines) + len(rows))
@@ -43,7 +49,10 @@ def matrix_target(relations: Iterable[Relational]) -> Target:
             lines += rows
         else:
             lines += relation_lines(in_entries(relation, matrices))
-    return Target(tuple(lines), blocks=blocks, matrices=matrices)
+    # w_cross = [0, -w3, w2; ...] says what its letter is
+    named = [relation.lhs.name for relation in relations if isinstance(relation.lhs, sp.MatrixSymbol)]
+    defines = len(named) == len(relations) and not any(name.endswith("dot") for name in named)
+    return Target(tuple(lines), blocks=blocks, matrices=matrices, defines=defines)
 
 
 def _sizes(relations: Iterable[Relational], symbols: Iterable[sp.MatrixSymbol]) -> dict[sp.Symbol, sp.Integer]:

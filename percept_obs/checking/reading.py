@@ -1,7 +1,7 @@
 """Reading a formula: text or LaTeX becomes sympy, built from listed letters and nothing else."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import sympy as sp
@@ -24,6 +24,7 @@ class Reading:
 
     name: str
     formula: sp.Basic
+    at: int = field(default=0, repr=False, compare=False)  # where it begins in the text
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,7 @@ class Definition:
     name: str
     formulas: tuple[sp.Basic, ...]
     used: bool
+    at: int = field(default=0, repr=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,7 @@ class Text:
 
     lines: tuple[Reading, ...]
     definitions: tuple[Definition, ...] = ()
+    dialects: tuple[str, ...] = ()
 
 
 def read(text: str, letters: Mapping[str, Any], labels: Iterable[str] = (), functions: Functions | None = None) -> Text:
@@ -81,7 +84,8 @@ class _Lines:
 
     def __init__(self, words: Words) -> None:
         self.words, self.refuse = words, words.refuse
-        self.tree = self.parsed(words.tokens())
+        self.tokens = words.tokens()
+        self.tree = self.parsed(self.tokens)
         self.named_lines = [line.children for line in self.tree.children if line.data == "named"]
         self.sides: dict[str, tuple[Any, ...]] = {}
         for label, *rest in self.named_lines:
@@ -118,14 +122,22 @@ class _Lines:
         ]
         found = {name: self.builder.side(name, self.tree.children[0].children[0]) for name in names}
         if len(lines) > 1 and all(not line.name and isinstance(line.formula, sp.Ne) for line in lines):
-            lines = [Reading("", sp.And(*(line.formula for line in lines), evaluate=False))]
+            join = sp.Or if any("lor" in token for token in self.tokens if token.type == "_LINE") else sp.And
+            lines = [Reading("", join(*(line.formula for line in lines), evaluate=False))]
         uses, used = self.builder.uses, set(self.builder.uses.get("", ()))
         waiting = [*used]
         while waiting:
             more = uses.get(waiting.pop(), set()) - used
             used |= more
             waiting += more
-        return Text(tuple(lines), tuple(Definition(n, formulas, n in used) for n, formulas in found.items()))
+        places = {str(label): self.place(label) for label, *_ in self.named_lines}
+        definitions = tuple(Definition(n, formulas, n in used, places[n]) for n, formulas in found.items())
+        return Text(tuple(lines), definitions, self.words.dialects)
+
+    def place(self, node: Any) -> int:
+        """Return where a part of the tree begins in the text that was typed."""
+        start = node.start_pos if isinstance(node, Token) else node.meta.start_pos
+        return self.words.origin[start] if start is not None and start < len(self.words.origin) else 0
 
     def line(self, node: Any) -> Any:
         """Return the value of a side of a line, and note the defined letters in it as used."""
@@ -145,7 +157,7 @@ class _Lines:
             value = self.line(side)
             if sign.children[0].type == "EQUAL":
                 self.refuse_unknown_rate(value, side)
-                found.append(Reading(str(label), value))
+                found.append(Reading(str(label), value, self.place(side)))
             else:  # in V' = a <= b it is V' that is at most b
                 left = value if left is None else left
                 found.append(Reading("", self.builder.related(left, sign.children[0], value, side)))
@@ -155,7 +167,7 @@ class _Lines:
     def unnamed(self, tree: Tree, side: Any) -> list[Reading]:
         value = self.line(side)
         self.refuse_unknown_rate(value, side)
-        return [Reading("", value)]
+        return [Reading("", value, self.place(side))]
 
     def relation(self, tree: Tree, first: Any, *rest: Any) -> list[Reading]:
         found: list[Reading] = []
@@ -166,7 +178,8 @@ class _Lines:
             if shape and shape == other[::-1] and getattr(first, "data", "") == "raised":  # [a, b]^T = a column
                 left = left.T
             kind = "=" if sign.children[0].type == "EQUAL" else sign.children[0]
-            found.append(self.solved(self.builder.related(left, kind, right, side), side))
+            solved = self.solved(self.builder.related(left, kind, right, side), side)
+            found.append(replace(solved, at=self.place(side)))
             left = right
         return found
 

@@ -1,5 +1,6 @@
 """Refusals of a reader: where it cannot read on, what stands there, what is expected."""
 
+import difflib
 import unicodedata
 from collections.abc import Iterable
 
@@ -76,7 +77,25 @@ def about_command(name: str) -> str:
         return rf"\{name} stands over a letter, as in \{name}{{y}}_{{1}}"
     if name in ("begin", "end"):
         return "of LaTeX's environments matrices, arrays, cases and those of equations and lines are read"
-    return rf"\{name} is not read; there are \frac, \sqrt, \sum with numbers, functions, Greek letters, matrices"
+    known = (
+        "frac",
+        "sqrt",
+        "sum",
+        "int",
+        "left",
+        "right",
+        "dot",
+        "hat",
+        "begin",
+        "end",
+        "cdot",
+        "text",
+        "quad",
+        "omega",
+    )
+    near = difflib.get_close_matches(name, known, 1, 0.6)
+    guess = rf", did you mean \{near[0]}?" if near else ";"
+    return rf"\{name} is not read{guess} there are \frac, \sqrt, \sum with numbers, functions, Greek letters, matrices"
 
 
 def about_token(token: Token, accepted: set[str]) -> str:

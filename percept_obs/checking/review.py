@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -11,11 +12,13 @@ from typing import Any
 
 import sympy as sp
 
+from percept_obs.checking.deciding import same
 from percept_obs.checking.explaining import Explanation, explained, plain, sentences, wrong_terms
 from percept_obs.checking.limits import SECONDS, TooLong, limited
-from percept_obs.checking.lines import typed
-from percept_obs.checking.matching import Judged, Verdict, judged
+from percept_obs.checking.lines import INEQUALITY, typed
+from percept_obs.checking.matching import Judged, Verdict, judged, steps
 from percept_obs.checking.places import put
+from percept_obs.checking.points import key
 from percept_obs.checking.reading import words_of
 from percept_obs.checking.target import Target
 from percept_obs.checking.targets import target_of
@@ -27,6 +30,7 @@ MARKS = {
     Verdict.CONVENTION: "✓",
     Verdict.CANNOT_TELL: "?",
 }
+VECTOR = "z1, z2, ... are the entries of any vector z: matrices M are compared by z^T M z"
 CANNOT_BE_TOLD = "It cannot be told whether this is the same; write it closer to the usual form."
 DECIDING = 0.55 * SECONDS
 """Seconds for deciding and explaining; the rest of `SECONDS` is left for printing."""
@@ -49,6 +53,10 @@ class Review:
         Processor time that may be taken to find all hints.
     unused : tuple of str
         Letters that were given a meaning which no line uses.
+    chain : str
+        Of a derivation: which line is the first that does not follow from the one before.
+    dialects : tuple of str
+        Dialects in which the text was written, such as "MATLAB"; see `percept_obs.checking.dialects`.
 
     Raises
     ------
@@ -75,6 +83,8 @@ class Review:
     hints: int = 0
     seconds: float = SECONDS
     unused: tuple[str, ...] = ()
+    chain: str = ""
+    dialects: tuple[str, ...] = ()
 
     @property
     def right(self) -> bool | None:
@@ -102,8 +112,14 @@ class Review:
         if wrong:
             count = len(self.lines)
             what = f"{len(wrong)} of {count} lines {'is' if len(wrong) == 1 else 'are'} wrong"
-            more = f"; hint({self.hints + 1}) says {HINTS[self.hints]}" if self.hints < 3 else ""
-            return (what if count > 1 else "Not right yet") + more + "."
+            after = max(self.hints, int(count == 1))  # of one line it is known which one is wrong
+            more = f"; hint({after + 1}) says {HINTS[after]}" if after < 3 else ""
+            told = f" {self.chain[:1].upper()}{self.chain[1:]}." if self.hints and self.chain else ""
+            first = next((k for k, line in enumerate(self.lines) if line.verdict == Verdict.WRONG), 0)
+            if told and self.hints > 2 and (slips := getattr(self.explanations.get(first), "slips", ())):
+                lost = f"you lost {plain(slips[0].after)}" if slips[0].kind == "missing" else ""
+                told = re.sub(r"(line \d+)(;|\.$)", rf"\1: {lost}\2", told) if lost else told
+            return (what if count > 1 else "Not right yet") + more + "." + told
         untold = [line for line in self.lines if line.verdict == Verdict.CANNOT_TELL]
         if untold:
             return next((f"{line.note.capitalize()}." for line in untold if line.note), CANNOT_BE_TOLD)
@@ -154,6 +170,9 @@ class Review:
             yield from where if self.hints == 2 else [*slips, *steps]
         elif (line.verdict == Verdict.CARRIED and self.hints) or (line.verdict == Verdict.WRONG and self.hints > 2):
             yield line.note
+        vector = any(re.fullmatch(r"z\d", s.name) for s in line.mine.free_symbols - self.target.pool)
+        if self.hints and vector and self.target.lines[line.row].kind == INEQUALITY:
+            yield VECTOR
 
     def _boxed(self, k: int) -> str:
         """Return the line in LaTeX, from the second hint on with wrong terms in a box."""
@@ -237,6 +256,9 @@ def check(mine: Any, target: Any) -> Review:
     values of all sizes; the review says so, and where it is right.  A "no" is certain.  Where nothing decides, the
     verdict is "cannot tell", with the reason if it takes longer than two seconds of computing.
 
+    Of a photo of a derivation, give what Mathpix, or a chat program that is asked for LaTeX, makes of it: that is read
+    as it is, with its delimiters, numbers and words.
+
     Examples
     --------
     >>> from percept_obs import PerspectiveSystem, affine, check, pinhole
@@ -245,7 +267,7 @@ def check(mine: Any, target: Any) -> Review:
     True
     >>> review = check("y3' = -y3 (a31 y1 + a32 y2 + a33 - b3 y3)", system)
     >>> print(review)
-    Not right yet; hint(1) says which line.
+    Not right yet; hint(2) says which term.
       y3' = -y3 (a31 y1 + a32 y2 + a33 - b3 y3)
     >>> print(review.hint(2))
     Not right yet; hint(3) says which slip, and in which step.
@@ -256,12 +278,17 @@ def check(mine: Any, target: Any) -> Review:
     words_of("y1")  # loads the grammar, which takes its time once
     began = time.thread_time()
 
-    def lines() -> tuple[Target, tuple[Judged, ...], tuple[str, ...]]:
+    def lines() -> Review:
         meant = goal.asked(goal.read(mine))
         text = meant.read(mine)
-        return meant, judged(text.lines, meant), tuple(d.name for d in text.definitions if not d.used)
+        meant = meant.signed(text)
+        found, known = judged(text.lines, meant), {key(s.name): e for s, e in meant.relations.items()}
+        left_over = (d for d in text.definitions if not d.used and not same(d.formulas[-1], known.get(d.name, sp.nan)))
+        unused = tuple(d.name for d in left_over)
+        if not found:
+            raise ValueError("there are definitions only; add the line that is asked for")
+        chain = steps(text, found, meant, mine)
+        return Review(meant, found, unused=unused, chain=chain, dialects=text.dialects)
 
-    meant, found, unused = limited(lines, DECIDING)
-    if not found:
-        raise ValueError("there are definitions only; add the line that is asked for")
-    return Review(meant, found, seconds=max(DECIDING - (time.thread_time() - began), 0.1), unused=unused)
+    found = limited(lines, DECIDING)
+    return replace(found, seconds=max(DECIDING - (time.thread_time() - began), 0.1))

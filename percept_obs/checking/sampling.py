@@ -200,7 +200,10 @@ def region(good: Sequence[Place], bad: Sequence[Place], *formulas: sp.Basic) -> 
                 between = {c for c in (*constants, *(-c for c in constants)) if low <= sign * float(c) <= high}
                 if low <= high and len(between) == 1:
                     return f"{shown} {relation} {between.pop()}".replace("**", "^").replace("*", " ")
-    return ""
+    # several letters must be positive, as in log(y1) + log(y2)
+    needed = [s for s in sorted(letters, key=str) if min(_values(s, good, float)) > 0]
+    signs = zip(*(_values(s, bad, float) for s in needed), strict=True)
+    return " and ".join(f"{s} > 0" for s in needed) if all(min(each) <= 0 for each in signs) else ""
 
 
 def _values(q: sp.Expr, places: Sequence[Place], size: Callable[[Any], Any]) -> list[float]:

@@ -10,11 +10,12 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.checking.deciding import explicit, on_sides
+from percept_obs.checking.deciding import explicit, on_sides, same
 from percept_obs.checking.lines import Line, of_matrices, typed
 from percept_obs.checking.matrices import Matrices, in_entries
 from percept_obs.checking.points import key
 from percept_obs.checking.reading import Definition, Functions, Reading, Text, read
+from percept_obs.checking.spelling import LABELS
 from percept_obs.compile import intermediates
 from percept_obs.observers.parts import hats
 from percept_obs.system.derivation import Derivation, Step
@@ -71,6 +72,8 @@ class Target:
         Functions that may be typed besides the usual ones, such as "norm".
     note : str
         What is to be said of a right formula.
+    defines : bool
+        The lines define their letters, so that no other convention is allowed.
 
     See Also
     --------
@@ -98,6 +101,7 @@ class Target:
     others: Mapping[str, Callable[[Text], Target]] = field(default_factory=dict)
     functions: Functions = field(default_factory=dict)
     note: str = ""
+    defines: bool = False
 
     @cached_property
     def steps(self) -> tuple[tuple[int, Step], ...]:
@@ -132,7 +136,22 @@ class Target:
     def conventions(self) -> tuple[Convention, ...]:
         """Other choices that are no errors here."""
         letters = set(self.letters.values())
-        return tuple(convention for convention in _conventions() if set(convention.changes) <= letters)
+        return tuple(c for c in _conventions() if set(c.changes) <= letters and not self.defines)
+
+    def signed(self, text: Text) -> Target:
+        """Return the target with errors of the sign that a text gives them, e1 = yhat1 - y1, and a note on it."""
+        error = {key(f"{s.name}dot"): s for s in self.letters.values() if key(f"{s.name}dot") in self.rows}
+        known = dict(self.relations)
+        given = {r.name: r.formula.xreplace(known) for r in text.lines if key(f"{r.name}dot") in error}
+        if not any(same(formula, -self.letters[name]) for name, formula in given.items()):
+            return self
+        turned = {s: -s for s in error.values() if not same(given.get(key(s.name), -s), s)}
+        lines = (replace(each, formula=each.formula.xreplace(turned)) for each in self.lines)
+        lines = (replace(each, formula=-each.formula) if error.get(each.key) in turned else each for each in lines)
+        relations = {s: e.xreplace(turned) for s, e in self.relations.items()}
+        return replace(
+            self, lines=tuple(lines), relations=relations, note="with your error, the estimate less the truth"
+        )
 
     def asked(self, text: Text) -> Target:
         """Return the target that a text is about: that of its names, one with gains that are 0 by default, or this."""
@@ -154,7 +173,7 @@ class Target:
         if isinstance(mine, str):
             found = self._defined(read(mine, *self.known, self.functions))
             written = (replace(r, formula=in_entries(r.formula, self.matrices)) for r in found.lines)
-            return replace(found, lines=tuple(part for r in written for part in _entry_by_entry(r)))
+            return self._alone(replace(found, lines=tuple(part for r in written for part in _entry_by_entry(r))))
         if isinstance(mine, Mapping):
             parts = {name: self.read(part) for name, part in mine.items()}
             named = [
@@ -171,6 +190,14 @@ class Target:
                 tuple(r for part in texts for r in part.lines), tuple(d for part in texts for d in part.definitions)
             )
         return Text(self._of_sympy(mine))
+
+    def _alone(self, text: Text) -> Text:
+        """Take the only formula of a text for what is asked, if that is one formula or matrix, whatever its name."""
+        if text.lines or not text.definitions or len({line.whole for line in self.lines}) > 1:
+            return text
+        *rest, last = text.definitions
+        formula = in_entries(last.formulas[-1], self.matrices)
+        return replace(text, lines=(Reading("", formula, last.at),), definitions=tuple(rest))
 
     def _of_sympy(self, mine: Any) -> tuple[Reading, ...]:
         """Return the lines of an expression, a matrix or a relation."""
@@ -190,7 +217,7 @@ class Target:
         matrices = {key(m.name): m for m in self.matrices if isinstance(m, sp.MatrixSymbol)}
         named = {key(each.letter.name): each for each in intermediates(line.formula for line in self.lines)}
         related = {key(s.name): s for s in self.relations}
-        return extra | named | related | self.letters | matrices, [*self.rows, *self.blocks, *self.others, *_LABELS]
+        return extra | named | related | self.letters | matrices, [*self.rows, *self.blocks, *self.others, *LABELS]
 
     def _defined(self, found: Text) -> Text:
         """Take somebody's lines for letters that are known by definition as definitions, and put them in."""
@@ -216,14 +243,16 @@ def _entry_by_entry(reading: Reading) -> Iterable[Reading]:
     """Yield the equations of an equation of matrices; other readings as they are."""
     formula = reading.formula
     if isinstance(formula, sp.Eq | sp.Ne) and any(isinstance(side, sp.MatrixBase) for side in formula.args):
-        pairs = zip(*of_matrices(formula).args, strict=True)
-        yield from (Reading("", formula.func(*sides, evaluate=False)) for sides in pairs)
+        pairs = (formula.func(*sides, evaluate=False) for sides in zip(*of_matrices(formula).args, strict=True))
+        # a matrix is not zero where some entry is not
+        some = isinstance(formula, sp.Ne) and len(of_matrices(formula).lhs) > 1
+        yield from (
+            [replace(reading, name="", formula=sp.Or(*pairs, evaluate=False))]
+            if some
+            else (replace(reading, name="", formula=pair) for pair in pairs)
+        )
     else:
         yield reading
-
-
-_LABELS = ("w", "wT", "phi", "g", "J", "Jm", "x", "x1", "x2", "xdot", "x1dot", "x2dot", "y", "ydot", "nablal")
-"""Names that may stand on the left of any line."""
 
 
 def _neighbours(letters: set[sp.Symbol]) -> Iterable[sp.Symbol]:

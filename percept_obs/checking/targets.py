@@ -215,7 +215,7 @@ def _letters(form: PartitionedSystem) -> frozenset[sp.Symbol]:
 
 @target_of.register
 def _(thing: InstantaneousObservability) -> Target:
-    return Target((Line("", thing.determinant, ZEROS),), _letters(thing.form))
+    return Target((Line("", thing.determinant, ZEROS, strict=True),), _letters(thing.form))
 
 
 @target_of.register
@@ -223,7 +223,7 @@ def _(thing: StructureAndMotion) -> Target:
     scale = sp.Symbol(QUANTITIES[0], real=True)
     pool = _letters(thing.form) | {sp.Symbol(name, real=True) for name in QUANTITIES}
     others = dict.fromkeys(("det", "Omega", "g", "Omegag"), partial(_case, thing, pool))
-    return Target((Line("", thing.determinant, ZEROS),), pool, nonzero=frozenset({scale}), others=others)
+    return Target((Line("", thing.determinant, ZEROS, strict=True),), pool, nonzero=frozenset({scale}), others=others)
 
 
 @target_of.register

@@ -22,8 +22,7 @@ FUNCTIONS: Functions = {
     **{"abs": sp.Abs, "sgn": sp.sign, "ln": sp.log, "arctan": sp.atan, "arcsin": sp.asin, "arccos": sp.acos},
     **{"Abs": sp.Abs, "fabs": sp.Abs, **_QUOTIENTS},
 }
-WRAPPERS = {"Matrix", "ImmutableMatrix", "array", "expand", "simplify", "factor"}
-"""Calls that leave a formula as it is."""
+OF_SEVERAL: Functions = {"max": sp.Max, "min": sp.Min}
 
 OPENING = {
     "LPAR": "RPAR",

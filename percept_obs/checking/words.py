@@ -2,18 +2,19 @@
 
 import difflib
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
 import sympy as sp
 from lark import Token
 
+from percept_obs.checking.dialects.symbols import GREEK
 from percept_obs.checking.notation import LONGEST_WORD, Notation
 from percept_obs.checking.points import key
 from percept_obs.checking.refusing import CLOSING, CannotRead, about_command, two_meanings
-from percept_obs.checking.spelling import name_of, other_names, rate_of
-from percept_obs.checking.tokens import FUNCTIONS, OPENING, WRAPPERS, bullet, partners, split, top_level
+from percept_obs.checking.spelling import LABELS, name_of, other_names, rate_of
+from percept_obs.checking.tokens import FUNCTIONS, OPENING, bullet, partners, split, top_level
 
 _CONTINUES = {"PLUS", "MINUS", "_TIMES", "SLASH", "EQUAL", "RELATION", "COMMA", "_POWER", "LPAR", "LSQB", "LBRACE"}
 _GOES_ON = {"PLUS", "MINUS", "_TIMES", "SLASH", "EQUAL", "RELATION", "_POWER", "RPAR", "RSQB", "RBRACE"}
@@ -25,6 +26,9 @@ _LABEL = re.compile(
     rf"|(LSQB|LPAR) {_MANY} (RSQB|RPAR)( _POWER (LBRACE )?NAME:T( RBRACE)?)?"
     rf"|LSQB LSQB {_N} RSQB( COMMA LSQB {_N} RSQB)* RSQB) EQUAL"
 )
+
+
+_NEVER_PROSE = {*FUNCTIONS, *GREEK.split(), "Piecewise", "Eq", "True", "otherwise"}
 
 
 class Words(Notation):
@@ -43,7 +47,7 @@ class Words(Notation):
             self._joined,
         )
         lines = (self._lines,) if strict else ()
-        for each in (*passes, *lines, self._told, self._bars, self._fractions, self._arguments):
+        for each in (*passes, *lines, self._told, self._bars, self._arguments):
             found = each(found) if strict else self._leniently(each, found)
         return found
 
@@ -171,8 +175,7 @@ class Words(Notation):
     def _lines(self, tokens: list[Token]) -> list[Token]:
         """Join continued lines, take bullets away, and put the left side of each line into one token."""
         out: list[Token] = []
-        for line, end in self._unwrapped(split(tokens)):
-            line = self._without_remark(line)
+        for line, end in split(tokens):
             rest = next((k for k, token in enumerate(line[:2]) if token.type == "EQUAL"), 0) + 1
             if rest == 2 and line[2:3] and line[2].type in ("LSQB", "LPAR") and (vector := self._label(line[2:])):
                 line = [vector, *line[2 + next(k for k, t in enumerate(line[2:]) if t.type == "EQUAL") :]]
@@ -229,35 +232,12 @@ class Words(Notation):
                 out.append(token)
         return out
 
-    def _unwrapped(self, lines: Iterable[tuple[list[Token], Token]]) -> Iterator[tuple[list[Token], Token]]:
-        """Write Eq(left, right) as left = right."""
-        for line, end in lines:
-            start = 2 if len(line) > 2 and line[1].type == "EQUAL" else 0
-            called = [str(t) for t in line[start : start + 2]] in (["Eq", "("], ["Equality", "("])
-            comma = top_level(line, start + 2, "COMMA") if called else None
-            if comma is None or line[-1].type != "RPAR":
-                yield line, end
-            else:
-                equal = line[comma].update(type="EQUAL", value="=")
-                yield [*line[start + 2 : comma], equal, *line[comma + 1 : -1]], end
-
-    def _without_remark(self, line: list[Token]) -> list[Token]:
-        """Leave out words in brackets at the end of a line, "(quotient rule)"."""
-        k = len(line) - 1
-        while line and line[-1].type == "RPAR" and line[k - 1].type == "NAME":
-            k -= 1
-        words = line[k:-1]
-        said = words and line[k - 1].type == "LPAR" and k > 1 and all(t.isalpha() and len(t) > 2 for t in words)
-        return (
-            line[: k - 1] if said and not any(self._spelled(t) in self.known or self._ways(t) for t in words) else line
-        )
-
     def _label(self, line: Sequence[Token]) -> Token | None:
         """Return the left side of a line as one token if the line begins with one."""
         end = next((k for k, token in enumerate(line[:200]) if token.type == "EQUAL"), None)
         if end is None or line[0].type not in ("D_DT", "NAME", "LPAR", "LSQB", "_MATRIX"):
             return None
-        kinds = [f"NAME:{t}" if t.type == "NAME" else t.type for t in line[: end + 1] if t not in WRAPPERS]
+        kinds = [f"NAME:{t}" if t.type == "NAME" else t.type for t in line[: end + 1]]
         text = " ".join(kinds)
         if kinds[0] == "LPAR" and kinds[-2] == "RPAR" and ("COMMA" not in kinds or kinds[1] == "LSQB"):
             text = " ".join([*kinds[1:-2], "EQUAL"])  # (y3') = ... and Matrix([...]) = ...
@@ -274,18 +254,21 @@ class Words(Notation):
             return None  # an equation of columns
         if not all(part in self.known for part in names):
             rate = re.fullmatch(r"[dD](\w+)", name)
-            if rate and key(f"{rate[1]}dot") in self.labels:
+            if rate and key(f"{rate[1]}dot") in self.labels and "d" in self.letters:
                 told = (f"the rate of {rate[1]}", "a letter of your own")
                 self.refuse(two_meanings(told, f"for the rate write {rate[1]}' ="), line[0])
             if any(accent in name for accent in ("dot", "hat", ",")) or name in FUNCTIONS:
-                there = ", ".join(sorted(self.labels))
-                self.refuse(f'there is no line "{name}"; there are {there}', line[0])
+                there = ", ".join(re.sub("dot$", "'", each) for each in sorted(self.labels) if each not in LABELS)
+                asked = f"asked for are {there}" if there else "one formula is asked for, so leave the left side out"
+                self.refuse(f"the line {re.sub('dot$', chr(39), name)} is not asked for here; {asked}", line[0])
             self.known.add(name)
         return line[0].update(type="LABEL", value=name)
 
     def _spelled(self, name: str) -> str:
         """Return a name as it is known, in another spelling if need be."""
-        return next((each for each in (name, *other_names(name)) if each in self.known), name)
+        if name in self.known or (name.startswith("d") and "d" in self.letters):
+            return name
+        return next((each for each in other_names(name) if each in self.known), name)
 
     def _told(self, tokens: list[Token]) -> list[Token]:
         """Replace names by letters, functions or several letters side by side, and refuse what has no meaning."""
@@ -309,8 +292,6 @@ class Words(Notation):
         transpose = name == "T" and before in ("_POWER", "LBRACE")
         if token.type != "NAME" or transpose:
             return [token]
-        if name in WRAPPERS and after == "LPAR" and name not in self.known:
-            return []
         name = self._spelled(name)
         if name in self.known or self.column(name):
             return [token.update(value=name)]
@@ -336,6 +317,12 @@ class Words(Notation):
         start = token.start_pos or 0
         typed = self.text[self.origin[start] : self.origin[(token.end_pos or start + 1) - 1] + 1]
         self.refuse(f'"{typed[:40]}" is no letter here{guess} {known}', token)
+
+    def is_name(self, word: str) -> bool:
+        """Return True for a word that may be a letter or a function here, or nearly one."""
+        name = self._spelled(name_of(word))
+        named = name in self.known or name in _NEVER_PROSE or name in self.functions or bool(self._ways(name))
+        return named or bool(len(name) > 3 and difflib.get_close_matches(name, self.known, 1, 0.8))
 
     def column(self, name: str) -> list[Any]:
         """Return the letters that a letter without an index stands for: b1, b2, b3 for b; empty if it has none."""

@@ -91,6 +91,8 @@ def derive(
     """
     if isinstance(mine, EllipsisType):
         return Attempt(None, UNANSWERED)
+    if len(asked) == 1 and isinstance(mine, str) and "=" not in mine:  # the right-hand side alone
+        mine = f"{asked[0]} = {mine}"
     goal = _with_factors(target_of(target), letters) if letters else target_of(target)
     try:
         review = check(mine, goal)

@@ -213,7 +213,7 @@ def test_matrices_are_told_from_their_transposes():
     [
         ("ybar3 v_c1 != 0", True),
         ("ybar3 = 0", False),
-        ("0 = ybar3 v_c1", True),
+        ("0 = ybar3 v_c1", False),
         ("-2 d_s v_c1 ybar3^3 (1 + y1^2)", True),
         ("ybar3", False),
         ("ybar3 v_c2", False),

@@ -174,7 +174,7 @@ test_a_refusal_says_what_is_allowed = refuses(
     ("yhat2", 'did you mean "yhat1"'),
     ("9^9^9", "a power of a power needs brackets"),
     ("1/0", "zero cannot stand below a fraction"),
-    ("x1' = y1", "there is no line"),
+    ("x1' = y1", "the line x1' is not asked for here"),
     error=CannotRead,
 )
 

@@ -5,6 +5,7 @@ from collections import Counter
 
 import pytest
 from formula_corpus import entries, prints, target
+from sample_sizes import sampled
 
 from percept_obs import CannotRead, check
 
@@ -32,6 +33,23 @@ def test_right_formulas_are_read_and_judged_right():
             print(f"{verdict}: {entry.text}\n{why}")
     assert counts[NOT_READ] <= 0.02 * len(found)
     assert counts[RIGHT] + counts[NOT_READ] == len(found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["people", "people_later"])
+def test_what_people_and_programs_write_is_read_and_nothing_wrong_is_accepted(name):
+    """Every sixth one; all of them with ALL_SAMPLES=1."""
+    chosen = entries(name)[:: sampled(6, 1)]
+    found = {True: Counter(), False: Counter()}
+    for entry in chosen:
+        verdict, why = outcome(entry)
+        found[entry.right][verdict] += 1
+        if (verdict == RIGHT) != entry.right:
+            print(f"{verdict}: {entry.text}\n{why}")
+    right, wrong = found[True], found[False]
+    print(f"\n{name}: right {dict(right)}, wrong {dict(wrong)}")
+    assert wrong[RIGHT] == right["judged wrong"] == 0
+    assert right[RIGHT] >= 0.85 * right.total()
 
 
 @pytest.mark.parametrize("entry", entries("asked"), ids=lambda entry: entry.text[:40])
