@@ -23,9 +23,25 @@ LENSES = ("", "none", "radtan", "radial-tangential", "plumb_bob", "rational_poly
 
 
 class Mount(NamedTuple):
-    """Where a camera sits on its body: p in metres, shape (3,), R, shape (3, 3), and the shift of their clocks.
+    """Where a camera sits on its body, and how far their clocks differ.
 
-    The body's clock is ahead of the camera's by `shift` seconds, Kalibr's timeshift_cam_imu.
+    Parameters
+    ----------
+    position : array_like, shape (3,)
+        Place of the camera in the body's coordinates, in metres.
+    orientation : array_like, shape (3, 3)
+        Rotation from the camera's axes to the body's.
+    shift : float
+        Seconds by which the body's clock is ahead of the camera's: Kalibr's timeshift_cam_imu.
+
+    See Also
+    --------
+    read_mount : Reads it.
+
+    Examples
+    --------
+    >>> Mount((0.1, 0, 0.2), ((1, 0, 0), (0, 1, 0), (0, 0, 1))).shift
+    0.0
     """
 
     position: Array

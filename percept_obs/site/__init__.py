@@ -172,7 +172,7 @@ def _texts(exam: bool) -> Pages:
     for text in (
         each
         for each in TEXTS.iterdir()
-        if each.suffix != ".toml" and each.is_file() and (exam or each.name != "exam.md")
+        if not each.name.endswith(".toml") and each.is_file() and (exam or each.name != "exam.md")
     ):
         folder = {".css": "_static/", ".html": "_templates/"}.get(Path(text.name).suffix, "")
         yield folder + text.name, text.read_text("utf-8")

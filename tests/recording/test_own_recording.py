@@ -65,13 +65,13 @@ def test_tum_is_read_back(tmp_path):
 def test_the_orders_of_the_quaternions_are_those_of_the_formats(tmp_path):
     (tmp_path / "tum").write_text("# a comment\n0 1 2 3 0.1 0.2 0.3 0.927361849549570\n1 1 2 3 0 0 0 1\n")
     (tmp_path / "euroc").write_text(
-        "#time [ns], p, q_w q_x q_y q_z, v\n0,1,2,3,0.927361849549570,0.1,0.2,0.3,9,9\n1000,1,2,3,1,0,0,0,9,9\n"
+        "#time [ns], p, q_w q_x q_y q_z, v\n0,1,2,3,0.927361849549570,0.1,0.2,0.3,9,9\n20000000,1,2,3,1,0,0,0,9,9\n"
     )
     for back in (read_tum(tmp_path / "tum"), read_euroc(tmp_path / "euroc")):
         np.testing.assert_allclose(back.orientation, [[0.1, 0.2, 0.3, 0.92736184954957], [0, 0, 0, 1]])
         assert back.position[0].tolist() == [1, 2, 3]
-    assert read_euroc(tmp_path / "euroc").time == pytest.approx([0, 1e-6])
-    assert read_euroc(tmp_path / "euroc", Clock(zero=1000, tick=1e-9)).time.tolist() == pytest.approx([-1e-6, 0])
+    assert read_euroc(tmp_path / "euroc").time == pytest.approx([0, 0.02])
+    assert read_euroc(tmp_path / "euroc", Clock(zero=20_000_000, tick=1e-9)).time.tolist() == pytest.approx([-0.02, 0])
     assert read_tum(tmp_path / "tum", Clock(zero=1, tick=0.5)).time.tolist() == [-0.5, 0]
 
 

@@ -117,7 +117,7 @@ def test_one_landmark_and_a_telephone_s_imu_with_unknown_biases_find_the_scale()
 
 
 @pytest.mark.parametrize(
-    ("rows", "said"), [("0,1,2\n", "column"), ("0,0,0,x,0,0,0\n", "x"), ("5,0,0,0,0,0,0\n" * 2, "increas")]
+    ("rows", "said"), [("0,1,2\n", "column"), ("0,0,0,x,0,0,0\n", "x"), ("5,0,0,0,0,0,0\n" * 2, "the time of the row before")]
 )
 def test_bad_files_of_an_imu_are_refused_with_a_sentence(tmp_path, rows, said):
     (tmp_path / "data.csv").write_text(rows)

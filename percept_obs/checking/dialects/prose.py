@@ -91,10 +91,10 @@ def _words(line: str, is_name: Callable[[str], bool]) -> Iterator[re.Match[str]]
     end = -1  # of the last such word
     for word in _WORD.finditer(line):
         before, after = line[: word.start()].rstrip(" "), line[word.end() :].lstrip(" ")
-        beside = before[-1:] in tuple("+-*/^=<>&_\\([{") or re.match(r"[-+*/^=_)}<>|\]]|:=", after)
+        beside = before[-1:] in tuple("+-*/^=<>&_\\([{") or bool(re.match(r"[-+*/^=_)}<>|\]]|:=", after))
         if len(word[0]) == 1:  # "a" in a sentence, but not the letter a
             following = _WORD.match(line, len(line) - len(after))
-            beside = beside or (following and is_name(following[0])) or bool(before[max(end, 0) :].strip(" ,"))
+            beside = beside or bool(following and is_name(following[0])) or bool(before[max(end, 0) :].strip(" ,"))
             beside = beside or not (following or (end >= 0 and not after))
         beside = beside or word[0] in ("plus", "minus", "times")
         if not beside and not is_name(word[0].rstrip(".")) and not _ACCENTED.fullmatch(word[0]):

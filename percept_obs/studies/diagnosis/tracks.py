@@ -161,7 +161,7 @@ def seen(track: Track, point: Array, mix_up: str, wrong: Mapping[str, Array], as
     found = {FOCAL: ratio * bent[:, :, None], BEND: (ratio * y * square)[:, :, None]}
     found[CENTRE] = np.broadcast_to(np.eye(m), (count, m, m))
     if MOUNT in asked:
-        turned = np.einsum("aij,nj->nia", -SPINS, maps @ point)
+        turned = np.einsum("aij,nj->nia", -SPINS, maps @ point) @ _turn_by_vector(-number[MOUNT][:3])
         shifted = np.broadcast_to(-turn * point[3] / track.unit, turned.shape)
         found[MOUNT] = by_position @ np.concatenate([turned, shifted], axis=2)
     if OFFSET in asked or SHUTTER in asked:
@@ -182,6 +182,14 @@ def _mount(track: Track, number: Mapping[str, Array]) -> tuple[Array, Array]:
     from scipy.spatial.transform import Rotation
 
     return Rotation.from_rotvec(-number[MOUNT][:3]).as_matrix(), number[MOUNT][3:] / track.unit
+
+
+def _turn_by_vector(vector: Array) -> Array:
+    """Derivative of a rotation, as a turn after it, by its rotation vector: the mean of all rotations on the way."""
+    from scipy.linalg import expm
+
+    turning = np.tensordot(vector, SPINS, axes=1)
+    return np.asarray(expm(np.block([[turning, np.eye(3)], [np.zeros((3, 6))]]))[:3, 3:])
 
 
 def _maps(track: Track, way: Path, times: Array, number: Mapping[str, Array]) -> Array:
