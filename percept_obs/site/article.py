@@ -13,7 +13,7 @@ from percept_obs.labs import observer_lab
 from percept_obs.labs.observer.lab import ObserverLab
 from percept_obs.labs.observer.settings import DRIVE
 from percept_obs.labs.shared.schema import Settings
-from percept_obs.site.extension import mathml
+from percept_obs.site.extension import displayed
 
 ARTICLE: dict[str, Any] = tomllib.loads(
     (resources.files("percept_obs.site") / "texts" / "article.toml").read_text("utf-8")
@@ -98,7 +98,7 @@ def scenes() -> tuple[list[dict[str, Any]], ObserverLab]:
     """The scenes with their words, formulas and what the page plays; and the lab that plays them."""
     lab = observer_lab()
     found = [
-        {**scene, "played": prepared(scene, lab), "formulas": [mathml(each, "block") for each in scene["symbols"]]}
+        {**scene, "played": prepared(scene, lab), "formulas": [displayed(each) for each in scene["symbols"]]}
         for scene in ARTICLE["scene"]
     ]
     lab.settings = found[0]["played"]["settings"]
