@@ -247,7 +247,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add("directory", type=Path, metavar="DIR", help="holds a folder a student, with the notebooks handed in")
     add("-o", "--output", type=Path, default=Path("marks.csv"), metavar="FILE", help="the table (default: %(default)s)")
     add("--roster", type=Path, metavar="FILE", help="CSV file with columns student and, if need be, folder and due")
-    limits = "also run the cells of answers that are no plain text or number, with limits, but as you: see the guide"
+    limits = "also run the cells of answers that are no plain text or number, with limits, but as you: see the site"
     add("--run", dest="run_code", action="store_true", help=limits)
 
     add = command(exam, "write a version of the exam")

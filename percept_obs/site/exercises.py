@@ -36,11 +36,6 @@ MARKED = re.compile(r"<!-- notebook -->.*?<!-- page:?(.*?)-->", re.DOTALL)
 NEEDED = re.compile(r"^(from percept_obs\.exercises import .*|needs\(.*\))\n*", re.MULTILINE)
 """Lines of code that only ask for what exercises need."""
 
-FOLDED = """<details class="asked" data-kind="{kind}" {data}><summary>Answer</summary>
-
-{words}
-
-</details>"""
 KINDS = {"derive": "formula", "choose": "choice", "reach": "values"}
 """Kinds of fields, by the function that checks the answer."""
 
@@ -53,8 +48,7 @@ def sheet_of(review: Review) -> dict[str, Any]:
     named = tuple(replace(line, name=line.name or "answer") for line in asked)
     step = Step("", "", {line.name: line.formula for line in named})
     sheet = Sheet([], Derivation((step,)), replace(review.target, lines=named, derivation=None))
-    only = "a page reads plain arithmetic only: the exercise's letters, numbers, + - * / ^ and brackets"
-    return {**printed(sheet, {}), "title": "", "said": SAID | {"python": only}}
+    return {**printed(sheet, {}), "title": "", "said": SAID | WORDS["said"]}
 
 
 def words_of_a_page(text: str) -> str:
@@ -81,7 +75,7 @@ def on_a_page(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
             cell.source = words_of_a_page(cell.source)
             if "solution" in tags:
                 words = cell.source.removeprefix("**A model answer.** ")
-                cell = new_markdown_cell(FOLDED.format(kind="words", data="", words=words))
+                cell = new_markdown_cell(WORDS["folded"].format(kind="words", data="", words=words))
             elif answers_in(cell):
                 cell.source = cell.source.replace("<details>", '<details class="asked" data-kind="words">')
         elif "solution" in tags:
@@ -113,4 +107,4 @@ def _folded(solution: str, check: nbformat.NotebookNode) -> str:
             words.insert(0, f'<script type="application/json">{inside(sheet)}</script>')
     else:
         words.insert(0, "```python\n{}\n```".format(re.sub(r"^#.*\n", "", solution, flags=re.MULTILINE)))
-    return FOLDED.format(kind=kind, data=data, words="\n\n".join(filter(None, words)))
+    return WORDS["folded"].format(kind=kind, data=data, words="\n\n".join(filter(None, words)))

@@ -11,7 +11,7 @@ from places import NOTEBOOKS
 from percept_obs import PerspectiveSystem, affine, check, pinhole
 from percept_obs.exercises.models import answers_in, notebooks
 from percept_obs.site import _texts
-from percept_obs.site.exercises import FOLDED, OF_A_NOTEBOOK, SHEET, inside, on_a_page, sheet_of, words_of_a_page
+from percept_obs.site.exercises import OF_A_NOTEBOOK, SHEET, WORDS, inside, on_a_page, sheet_of, words_of_a_page
 from percept_obs.site.slides import slides_of
 
 SYSTEM = PerspectiveSystem(affine(), pinhole())
@@ -94,7 +94,7 @@ def exercises(browser, tmp_path):
         ("choice", 'data-right="b" data-options="a b c"', ANSWER),
         ("formula", "", f"{sheet}\n{ANSWER}"),
     ]
-    shown = "".join(FOLDED.format(kind=kind, data=data, words=words) for kind, data, words in kinds)
+    shown = "".join(WORDS["folded"].format(kind=kind, data=data, words=words) for kind, data, words in kinds)
     script = (FRONT / "exercises.js").read_text("utf-8")
     (tmp_path / "page.html").write_text(
         f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises</title><main>{shown}</main>'
