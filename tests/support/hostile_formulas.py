@@ -21,7 +21,6 @@ HOSTILE = [
     "print(y1)",
     "Symbol('y1')",
     "f'{y1}'",
-    "y1; import os",
     "y1 := := 2",
     "@y1",
     "`ls`",

@@ -55,7 +55,10 @@ def _bare(line: str, is_name: Callable[[str], bool]) -> str:
         line = line[: named.end() - 1] + "=" + line[named.end() :]
         if line.lstrip().startswith("{"):
             line = line.replace("{", " ", 1).rstrip().removesuffix("}")
-    return "".join(_line_end_for_stop(word) for word in re.split(r"(\s+)", line))
+    words = re.split(r"(\s+)", line)
+    first = next((k for k, word in enumerate(words) if word.strip()), 0)
+    named = words[first].endswith(":") and is_name(words[first][:-1])  # "y1: 2 + 2" is not two lines
+    return "".join(word if k == first and named else _line_end_for_stop(word) for k, word in enumerate(words))
 
 
 def _remark(found: re.Match[str], is_name: Callable[[str], bool]) -> str:
@@ -94,8 +97,9 @@ def _words(line: str, is_name: Callable[[str], bool]) -> Iterator[re.Match[str]]
         beside = before[-1:] in tuple("+-*/^=<>&_\\([{") or bool(re.match(r"[-+*/^=_)}<>|\]]|:=", after))
         if len(word[0]) == 1:  # "a" in a sentence, but not the letter a
             following = _WORD.match(line, len(line) - len(after))
-            beside = beside or bool(following and is_name(following[0])) or bool(before[max(end, 0) :].strip(" ,"))
-            beside = beside or not (following or (end >= 0 and not after))
+            named = following is not None and is_name(following[0])
+            last = end >= 0 and not after
+            beside = beside or named or bool(before[max(end, 0) :].strip(" ,")) or not (following or last)
         beside = beside or word[0] in ("plus", "minus", "times")
         if not beside and not is_name(word[0].rstrip(".")) and not _ACCENTED.fullmatch(word[0]):
             end = word.end()
@@ -105,7 +109,7 @@ def _words(line: str, is_name: Callable[[str], bool]) -> Iterator[re.Match[str]]
 def _formulas(line: str, is_name: Callable[[str], bool], sentence: bool, related: bool) -> Iterator[str]:
     """Yield the parts of a line: formulas, each on a line of its own, and blanks for the words between them."""
     found = [(each.start(), each.end()) for each in _words(line, is_name)]
-    found = [span for k, span in enumerate(found) if not _factor(line, found, k, sentence)]
+    found = [span for k, span in enumerate(found) if not _factor(line, found, k, sentence, related)]
     if not found:
         yield line
         return
@@ -117,12 +121,12 @@ def _formulas(line: str, is_name: Callable[[str], bool], sentence: bool, related
         yield "\n" * (after > end) + " " * (after - end - 1)
 
 
-def _factor(line: str, found: list[tuple[int, int]], k: int, sentence: bool) -> bool:
+def _factor(line: str, found: list[tuple[int, int]], k: int, sentence: bool, related: bool) -> bool:
     """Return True if a word may be meant as a factor, b1 speed y3: alone between operands, no equation behind it."""
     start, end = found[k]
     before, after = line[:start].rstrip(), line[end:].lstrip()
     following = bool(k + 1 < len(found)) and not line[end : found[k + 1][0]].strip(" ,'")
     preceding = k > 0 and not line[found[k - 1][1] : start].strip(" ,'")
-    if following or preceding or not re.search(r"[\w)}\]']$", before) or not _FORMULA.search(before):
+    if following or preceding or not re.search(r"[\w)}\]']$", before) or (related and not _FORMULA.search(before)):
         return False
     return not _EQUATION.match(after) if re.match(r"[\w\\({\[|]", after) else not (sentence or line[end:].strip())
