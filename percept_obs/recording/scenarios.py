@@ -147,6 +147,11 @@ def held_phone(imu: Imu | None = None, seed: Seed = 0, shake: float = 1.0, begin
     begin : float
         Seconds at constant speed before it.
 
+    Raises
+    ------
+    ValueError
+        If the shake is not finite, or begins before 0.
+
     See Also
     --------
     own_ship_turns : Another source of scale.
@@ -158,6 +163,8 @@ def held_phone(imu: Imu | None = None, seed: Seed = 0, shake: float = 1.0, begin
     >>> (1 / recording.truth[[0, -1], -1]).round(2).tolist()
     [3.0, 2.73]
     """
+    if not (np.isfinite(shake) and begin >= 0):
+        raise ValueError(f"the shake is {shake} and begins at {begin} s; it must be finite, and begin at 0 or later")
     errors, duration = imu or Imu(), 12.0
     times = np.arange(0, duration + 1, 0.005)
     rates, phases = np.array([2.0, 3.0, 2.5]), np.array([0.0, 1.0, 2.0])

@@ -213,6 +213,12 @@ def _state_of(observer: Observer, belief: Belief, scale: Array) -> Array:
     """State of a filter that consists of the estimate and its covariance."""
     if observer.covariance is None or not {*observer.estimate, *observer.covariance} >= {*observer.equations.state}:
         raise DoesNotFit(f"the {observer.name} observer cannot start from a covariance; the extended Kalman filter can")
+    n = len(observer.estimate)
+    shapes = np.shape(belief.estimate), np.shape(belief.covariance)
+    if shapes != ((n,), (n, n)) or not np.isfinite(belief.covariance).all() or not np.isfinite(belief.estimate).all():
+        raise ValueError(
+            f"the belief has the shapes {shapes[0]} and {shapes[1]}; expected finite ({n},) and ({n}, {n})"
+        )
     estimate, covariance = belief.estimate * scale, belief.covariance * np.outer(scale, scale)
     at = dict(zip((*observer.estimate, *observer.covariance), [*estimate, *covariance.ravel()], strict=True))
     return np.array([at[symbol] for symbol in observer.equations.state])

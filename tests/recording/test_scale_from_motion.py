@@ -114,6 +114,12 @@ def test_one_landmark_and_a_telephone_s_imu_with_unknown_biases_find_the_scale()
         assert run.relative_error[300] < 0.02
 
 
+@pytest.mark.parametrize("wrong", [{"shake": np.inf}, {"begin": -1.0}, {"begin": np.nan}])
+def test_a_shake_that_cannot_be_is_refused(wrong):
+    with pytest.raises(ValueError, match="it must be finite"):
+        scenarios.held_phone(**wrong)
+
+
 def test_a_telephone_that_is_not_shaken_keeps_its_speed():
     truth = record(scenarios.held_phone(shake=0.0), 9, Camera(0.5)).truth
     assert np.ptp(np.linalg.norm(truth[:, 2:5] / truth[:, -1:], axis=1)) < 2e-4  # the left end of each step: 0.04
