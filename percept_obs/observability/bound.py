@@ -12,18 +12,11 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags
 from percept_obs.compile.integrator import LONGEST_STEP
-from percept_obs.observability.linearised import (
-    Doubt,
-    Linearised,
-    System,
-    linearised,
-    matching_form,
-    names_of,
-    positions,
-)
+from percept_obs.observability.matching import System, matching_form
 from percept_obs.observers import extended_kalman
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.tracking.linearised import Doubt, Linearised, linearisation, names_of, positions
 from percept_obs.validation import checked, positive
 
 Prior = Mapping[str, float] | ArrayLike | None
@@ -210,8 +203,9 @@ def cramer_rao(
     positive(step=step)
     noise = _noise(recording, form, noise_variance)
     start, from_sample = _start(form, prior, noise[0], HIDDEN_VARIANCE / recording.scale**2)
+    assert recording.truth is not None
     with np.errstate(all="ignore"):  # overflow is reported below
-        along = linearised(form, recording, doubt, step)
+        along = linearisation(form, recording, doubt, step)(recording.truth)
     if from_sample and not along.seen[0].all():
         raise ValueError(
             "the first sample was lost, so that the measured outputs need a prior; give one, or cut it off"

@@ -6,20 +6,12 @@ import numpy as np
 
 from percept_obs.compile import Array, Indices
 from percept_obs.compile.integrator import step_along
-from percept_obs.observability.linearised import (
-    System,
-    linearised,
-    matching_form,
-    names_of,
-    outputs_of,
-    positions,
-    rate_of,
-    values_along,
-)
+from percept_obs.observability.matching import System, matching_form
 from percept_obs.observability.windows import Windows, check_window, window_integrals
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.signal import slack_of
+from percept_obs.tracking.linearised import linearisation, names_of, outputs_of, positions, rate_of, values_along
 from percept_obs.validation import checked
 
 PERTURBATION = 1e-3
@@ -99,7 +91,8 @@ def error_gramian(recording: Recording, system: System, window: float) -> ErrorG
     """
     form = matching_form(system, recording)
     check_window(recording, window, holds_samples=True)
-    along = linearised(form, recording)
+    assert recording.truth is not None
+    along = linearisation(form, recording)(recording.truth)
     H = np.eye(len(form.coordinates))[along.measured] * along.seen[:, :, None]
     begins, matrices = window_integrals(recording.time, np.swapaxes(H, 1, 2) @ H, along.transitions, window)
     by_unit = matrices / np.outer(recording.scale, recording.scale)

@@ -14,9 +14,10 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, vectorised
 from percept_obs.observability.directions import in_words
-from percept_obs.observability.linearised import System, as_form, names_of, rate_of
+from percept_obs.observability.matching import System, as_form
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.tracking.linearised import names_of, rate_of
 from percept_obs.validation import MOST_TERMS, checked, limit, travels
 
 NEGLIGIBLE = 1e-8

@@ -13,7 +13,7 @@ from percept_obs.observability.bound import Bound, cramer_rao
 from percept_obs.observability.directions import in_words
 from percept_obs.observability.error_gramian import ErrorGramian, empirical_gramian, error_gramian
 from percept_obs.observability.lie import LieRanks, lie_ranks
-from percept_obs.observability.linearised import System, matching_form
+from percept_obs.observability.matching import System, matching_form
 from percept_obs.observability.windows import Excitation, Windows, instants, windowed
 from percept_obs.observers import extended_kalman
 from percept_obs.recording import Recording

@@ -11,7 +11,7 @@ from percept_obs.compile import Array, Flags
 from percept_obs.compile.integrator import by_step, instants, step
 from percept_obs.points.form import PointsForm
 from percept_obs.recording import Recording
-from percept_obs.tracking.information import LIMITS, Fit
+from percept_obs.tracking.information import LIMITS, Fit, looks_like_noise
 
 LARGEST_TABLE = 4_000_000
 """Most entries of the table of transitions; of more samples, every so many are taken."""
@@ -23,7 +23,7 @@ PASSES = 4
 def many_points(form: PointsForm, recording: Recording) -> Fit:
     """Least squares on the images: B C (Phi x + c) = 0 for the state x at the end, over the distance of each point."""
 
-    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array, float]:
+    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, bool, float]:
         every = max(1, (len(recording.time) - first) * form.states**2 // LARGEST_TABLE)
         used = np.arange(len(recording.time) - 1, first - 1, -every)  # backwards from the end
         outputs = recording.outputs[used]
@@ -51,10 +51,11 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
         own = recording.noise_variance or 0.0
         shared = (recording.effective_variance or 0.0) - own  # by all points, so that many on one body do not lessen it
         known_noise = math.sqrt(own + shared * max(1.0, 3 * form.points / form.states))
-        noise = max(math.sqrt(max(residual, 0.0) / free), finest, known_noise) if free > 0 else math.nan
+        left = math.sqrt(max(residual, 0.0) / max(free, 1))
         if free < 1 or not (depth[seen] > 0).all():
-            return x, math.inf, np.full(m, noise), 0.0
-        return x, _worst(form, x, values, vectors, determined, noise), np.full(m, noise), 0.0
+            return x, math.inf, True, 0.0
+        worst = _worst(form, x, values, vectors, determined, max(left, finest, known_noise))
+        return x, worst, not known_noise or looks_like_noise(left, 0.0, known_noise), 0.0
 
     return fit
 

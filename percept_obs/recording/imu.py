@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -73,7 +73,9 @@ class Imu:
         def at(instants: Array) -> Array:
             return np.stack([np.interp(instants, times, column) for column in biases.T], axis=-1)
 
-        return imu(samples[:, :3], samples[:, 3:], times), at
+        known = imu(samples[:, :3], samples[:, 3:], times)
+        names = (symbol.name for symbol in known.parameters)
+        return replace(known, densities=dict(zip(names, (noise**2).tolist(), strict=True))), at
 
 
 @checked

@@ -133,8 +133,8 @@ def own_ship_turns() -> StateScenario:
 
 
 @checked
-def held_phone(imu: Imu | None = None, seed: Seed = 0) -> StateScenario:
-    """Return a landmark 3 m ahead of a telephone that a hand shakes by 1 m/s^2 and turns for 12 s, with its IMU.
+def held_phone(imu: Imu | None = None, seed: Seed = 0, shake: float = 1.0, begin: float = 0.0) -> StateScenario:
+    """Return a landmark 3 m ahead of a telephone that a hand shakes and turns for 12 s, with its IMU.
 
     Parameters
     ----------
@@ -142,6 +142,15 @@ def held_phone(imu: Imu | None = None, seed: Seed = 0) -> StateScenario:
         Errors of the IMU; the usual ones when left out.
     seed : int or numpy Generator
         Of the IMU's errors.
+    shake : float
+        Largest acceleration in m/s^2 along each axis; with 0 the telephone keeps its speed.
+    begin : float
+        Seconds at constant speed before it.
+
+    Raises
+    ------
+    ValueError
+        If the shake is not finite, or begins before 0.
 
     See Also
     --------
@@ -154,16 +163,19 @@ def held_phone(imu: Imu | None = None, seed: Seed = 0) -> StateScenario:
     >>> (1 / recording.truth[[0, -1], -1]).round(2).tolist()
     [3.0, 2.73]
     """
+    if not (np.isfinite(shake) and begin >= 0):
+        raise ValueError(f"the shake is {shake} and begins at {begin} s; it must be finite, and begin at 0 or later")
     errors, duration = imu or Imu(), 12.0
     times = np.arange(0, duration + 1, 0.005)
     rates, phases = np.array([2.0, 3.0, 2.5]), np.array([0.0, 1.0, 2.0])
-    world = -np.sin(np.outer(times, rates) + phases)
+    world = -shake * (times >= begin)[:, None] * np.sin(np.outer(times, rates) + phases)
     turning = np.array([0.3, 0.3, 0.2]) * np.sin(np.outer(times, [1.3, 1.7, 1.1]) + np.array([0.0, 1.0, 1.6]))
-    rotations = accumulate(exponential(-0.005 * np.cross(turning[:-1, None], np.eye(3))), np.matmul, initial=np.eye(3))
+    between = (turning[1:] + turning[:-1]) / 2  # as the truth is integrated; the left end would accelerate by 7 mm/s^2
+    rotations = accumulate(exponential(-0.005 * np.cross(between[:, None], np.eye(3))), np.matmul, initial=np.eye(3))
     gravity = np.array([0.0, 9.81, 0.0])
     felt = np.stack([rotation.T @ (each - gravity) for rotation, each in zip(rotations, world, strict=True)])
     known = imu_motion(turning, felt, times)
     measured, biases = errors.measured(known, duration, seed)
-    speed = np.cos(phases) / rates + np.array([0.15, 0.05, 0.0])
+    speed = (begin == 0) * shake * np.cos(phases) / rates + np.array([0.15, 0.05, 0.0])
     state = (0.4, 0.2, 3.0, *speed, *gravity, *np.zeros(6))
     return StateScenario("held phone", camera_with_imu(), known, state, duration, measured, biases)

@@ -67,4 +67,6 @@ def camera_with_imu() -> StateView:
     back = (y1 / y3, y2 / y3, 1 / y3, *(u / y3), *(q / y3), *b_w, *(c / y3))
     usual = dict.fromkeys(q, 3.0) | dict.fromkeys(b_w, 0.01) | dict.fromkeys(c, 0.03) | {y3: 0.3}
     image = {y1: p[0] / p[2], y2: p[1] / p[2]}
-    return StateView("camera with an IMU", state, rate, imu(), image, rest, back, (1,) * 9 + (0,) * 3 + (1,) * 3, usual)
+    powers = (1,) * 9 + (0,) * 3 + (1,) * 3
+    guess = dict(zip(q, -a / 2, strict=True)) | dict.fromkeys(c, 0) | {y3: sp.Rational(1, 2)}  # 2 m away
+    return StateView("camera with an IMU", state, rate, imu(), image, rest, back, powers, usual, (), guess)

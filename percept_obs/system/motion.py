@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property, partial, wraps
 from inspect import signature
 from typing import Any
@@ -51,6 +51,8 @@ class Motion:
         Values of `parameters` over time.  It pickles with functions of a module; a lambda, pickle refuses.
     errors : PoseErrors, optional
         Errors of the camera's poses that the signal was made from.
+    densities : mapping of names of parameters to floats, optional
+        Densities of white noise in the signal: variance times the time between samples.
 
     Raises
     ------
@@ -80,6 +82,7 @@ class Motion:
     parameters: tuple[sp.Symbol, ...]
     signal: Signal | None = None
     errors: Any = None
+    densities: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def lengths(self) -> tuple[int, ...]:

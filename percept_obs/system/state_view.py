@@ -46,6 +46,8 @@ class StateView(OnePoint):
         Power of length of each entry of x.
     usual : mapping of coordinates to floats, optional
         Usual sizes of hidden ones, by which a filter's deviation at the start is multiplied; 1 for those left out.
+    guess : mapping of coordinates to expressions in the motion's parameters, optional
+        Coordinates that are 0 for a point at infinity, and what they are for a near one if nothing accelerates.
 
     Raises
     ------
@@ -78,6 +80,7 @@ class StateView(OnePoint):
     powers: tuple[int, ...]
     usual: Mapping[sp.Symbol, float] = field(default_factory=dict)
     parameters: Symbols = ()
+    guess: Mapping[sp.Symbol, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         again = [e.subs(self.formulas, simultaneous=True) for e in self.back]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache, singledispatch
 from typing import Annotated, Any
 
@@ -19,8 +20,10 @@ from percept_obs.observers.inversion import Unobservable, elapsed, first_innovat
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
+from percept_obs.system.state_view import StateView
 from percept_obs.tracking.grid import Hold, TimeGrid, known_signals, time_grid
 from percept_obs.tracking.run import Run
+from percept_obs.tracking.smoothing import Belief, doubts_of, once_observable
 from percept_obs.validation import Kind, checked, limit, refuse_kind, warn
 
 Start = Mapping[str, float] | Sequence[float] | None
@@ -80,9 +83,11 @@ def track(
         Of one point or of several.
     observer : Observer, FunctionObserver, or LuenbergerObserver for several points
         On the recording's surface, with measured outputs that the recording has.
-    start : mapping of coordinate names to values, n values, or FirstSight, optional
+    start : mapping of coordinate names to values, n values, Belief, or FirstSight, optional
         Estimates at the first sample.  What is left out starts from the first sample (measured) or at the
-        observer's own start (hidden).  Several points may start at their `FirstSight`.
+        observer's own start (hidden).  The extended Kalman filter may start from a `Belief`, with a covariance.  Left
+        out for a camera with an IMU, it starts when a smoother of all samples so far knows the distance to a tenth,
+        and it has no estimate before.  Several points may start at their `FirstSight`.
     hold : "zero", "first" or "exact"
         Signal that stands for the outputs between samples: the last sample; a line to the next one, which a running
         system does not have yet, so that it looks one sample ahead; or the exact signal without noise, known in
@@ -163,11 +168,14 @@ def follow(observer: Any, grid: TimeGrid, start: Any, believed: Motion | None, l
 
 @follow.register
 def _follow_one_point(
-    observer: Observer, grid: TimeGrid, start: Start, believed: Motion | None, language: Language | None
+    observer: Observer, grid: TimeGrid, start: Start | Belief, believed: Motion | None, language: Language | None
 ) -> Run:
     form, recording = observer.form, grid.recording
     believed = believed or recording.motion
     _require_fit(grid, observer, believed)
+    if start is None and isinstance(form.view, StateView) and form.view.guess and observer.equations.update:
+        return _once_observable(observer, grid, believed, language)
+    belief, plain = (start, None) if isinstance(start, Belief) else (None, start)
     places = [recording.names.index(name) for name in form.measured]
     adjacent = places == list(range(places[0], places[0] + len(places)))
     columns: Any = slice(places[0], places[0] + len(places)) if adjacent else places  # a slice copies nothing
@@ -175,19 +183,21 @@ def _follow_one_point(
     _warn_of_long_steps(observer, grid)
     times = grid.instants if believed.constants is None else grid.times[:1]  # many instants take long
     known = known_signals(believed, recording.view, times, recording.unit)
-    named = named_start(start, form.coordinates)
+    named = named_start(plain, form.coordinates)
     if named and recording.unit != 1:
         units = dict(zip(map(str, recording.view.coordinates), recording.scale.tolist(), strict=True))
         named = {name: value * units.get(name, 1.0) for name, value in named.items()}
     outputs = dict(zip(form.measured, samples[0].tolist(), strict=True))
     initial = state_at_start(observer, outputs, named, zip(form.parameters, known[0].tolist(), strict=True))
+    if belief:
+        initial = _state_of(observer, belief, recording.scale)
     arriving = np.empty((0, len(form.measured)))
     if observer.equations.update:
         arriving = np.array(samples)
         if not grid.one_step_a_sample:
             arriving = np.full((len(grid.times), len(form.measured)), np.nan)
             arriving[grid.index] = samples
-        arriving[0, [name not in named for name in form.measured]] = np.nan  # the start already uses these samples
+        arriving[0, [bool(belief) or name not in named for name in form.measured]] = np.nan  # the start uses these
     table = Table(grid.steps, grid.held(filled=True)[..., columns], known, arriving)
     language = choose(language, len(grid.steps), observer.equations)
     trace = solve(observer.equations, initial, table, [gain.value for gain in observer.gains], language)
@@ -199,6 +209,42 @@ def _follow_one_point(
     resets = grid.times[trace.resets.nonzero()[0]]
     scaled = estimate if recording.unit == 1 else estimate / recording.scale  # a copy takes a fifth of a short run
     return Run(recording, observer, scaled, states, diverged_at, grid.hold, resets, unobservable)
+
+
+def _state_of(observer: Observer, belief: Belief, scale: Array) -> Array:
+    """State of a filter that consists of the estimate and its covariance."""
+    if observer.covariance is None or not {*observer.estimate, *observer.covariance} >= {*observer.equations.state}:
+        raise DoesNotFit(f"the {observer.name} observer cannot start from a covariance; the extended Kalman filter can")
+    n = len(observer.estimate)
+    shapes = np.shape(belief.estimate), np.shape(belief.covariance)
+    if shapes != ((n,), (n, n)) or not np.isfinite(belief.covariance).all() or not np.isfinite(belief.estimate).all():
+        raise ValueError(
+            f"the belief has the shapes {shapes[0]} and {shapes[1]}; expected finite ({n},) and ({n}, {n})"
+        )
+    estimate, covariance = belief.estimate * scale, belief.covariance * np.outer(scale, scale)
+    at = dict(zip((*observer.estimate, *observer.covariance), [*estimate, *covariance.ravel()], strict=True))
+    return np.array([at[symbol] for symbol in observer.equations.state])
+
+
+def _once_observable(observer: Observer, grid: TimeGrid, believed: Motion, language: Language | None) -> Run:
+    """Run of a filter that starts when the samples tell the scale."""
+    form, recording, count = observer.form, grid.recording, len(grid.recording.time)
+    variance = next(gain.value for gain in observer.gains if gain.name == "noise_variance")
+    known, noise = replace(recording, motion=believed), np.full(len(form.measured), variance)
+    first, belief = once_observable(form, known, noise, doubts_of(observer, believed)) or (count, None)
+    late = replace(
+        observer, unobservable=(Unobservable(sp.false, f"the samples did not tell {recording.view.judged} yet"),)
+    )
+    estimate, states = np.full((count, len(form.coordinates)), np.nan), np.full((count, len(observer.start)), np.nan)
+    found = Run(recording, late, estimate, states, None, grid.hold, np.empty(0), (np.arange(count) < first).astype(int))
+    if belief is None:
+        return found
+    at = grid.index[first]
+    rest = recording.between(recording.time[first], recording.time[-1])
+    later = TimeGrid(rest, grid.times[at:], grid.index[first:] - at, grid.hold, grid.longest_hold)
+    run = _follow_one_point(observer, later, belief, believed, language)
+    estimate[first:], states[first:] = run.estimate, run.state
+    return replace(found, diverged_at=run.diverged_at, resets=run.resets)
 
 
 def _estimates(

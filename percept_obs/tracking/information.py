@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from percept_obs.compile import Array, Table, solve
-from percept_obs.compile.equations import Equations
-from percept_obs.compile.integrator import EACH, LONGEST_STEP, instants
+from percept_obs.compile import Array
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
-from percept_obs.system.surfaces import ImagingSurface
+from percept_obs.system.state_view import StateView
 from percept_obs.system.view import View
-from percept_obs.tracking.doubts import DOUBTS, FAR, SPLIT, images_backwards
-from percept_obs.tracking.grid import known_signals
+from percept_obs.tracking.doubts import DOUBTS, images_backwards
+from percept_obs.tracking.linearised import outputs_of, positions
+from percept_obs.tracking.smoothing import shows_scale, smoothed, usual_start
 
 
 @dataclass(frozen=True)
@@ -29,6 +28,11 @@ class Limits:
     longer: int = 3  # windows twice as long each, by which the known motion is tested once one is long enough
     surely: float = 3.5  # deviations of chance by which residuals are more alike than white noise: one in 4000 runs
     correlated: float = 0.5  # seconds up to which errors of samples are asked for their correlation
+    unexplained: float = 1.5  # times the noise that is said, which few know better: what is left beyond it is not noise
+    alike: float = 0.3  # correlation of residuals in a row, beyond which they are not, where no noise is said
+    wild: float = 9.0  # usual residuals, six deviations of normal noise, beyond which a sample is an exception,
+    most_wild: float = 0.15  # and the share of them beyond which they are none
+    camera: float = 1e-4  # standard deviation in focal lengths of the best camera: a twentieth of a pixel
     finest: float = 1e-6  # noise of the best measurement, over the output's size: no camera is better
     rounding: float = 1e-7  # share of a column's norm below which differences of nearly equal numbers are rounding
     small: float = 1e-4  # relative change of a coordinate for a difference quotient
@@ -42,8 +46,8 @@ class Information:
     """Least-squares estimate of the coordinates at the last sample, from the samples of the last seconds.
 
     The deviation is the relative standard deviation of what is judged, infinite where samples tell nothing; `unexcited`
-    are the seconds at the end in which they do.  The noise has the standard deviation of each output, as given or that
-    of the residuals.  The drift is the change of the known translation's scale, over the whole recording, of which the
+    are the seconds at the end in which they do.  What is left of all samples is explained if it looks like noise.  The
+    drift is the change of the known translation's scale, over the whole recording, of which the
     samples leave no doubt.  Estimates from longer windows agree if the motion is as it is known.
     """
 
@@ -51,7 +55,7 @@ class Information:
     deviation: float
     window: float
     unexcited: float
-    noise: Array
+    explained: bool = True
     drift: float = 0.0
     longer: tuple[Information, ...] = ()
 
@@ -69,9 +73,20 @@ class Information:
         return math.sqrt(found)
 
 
-Fit = Callable[[int, list[Array]], tuple[Array, float, Array, float]]
+Fit = Callable[[int, list[Array]], tuple[Array, float, bool, float]]
 """Least squares on the samples from one on, from the best of some initial guesses; returns coordinates at the end,
-their relative deviation, the noise of each output, and the drift of scale that the samples surely tell."""
+their relative deviation, False if it is of all samples and leaves more than noise, and the drift of scale that they
+surely tell."""
+
+
+def looks_like_noise(left: float, correlation: float, noise: float | None) -> bool:
+    """Return True if residuals are as small as the noise is said to be, or white, where nothing is said of it.
+
+    They are given by their root mean square and the correlation of neighbours in time.
+    """
+    if noise is not None:
+        return left <= LIMITS.unexplained * max(noise, LIMITS.camera)
+    return left <= LIMITS.camera or correlation <= LIMITS.alike
 
 
 def information_at_end(fit: Fit, elapsed: Array, guess: Array) -> Information:
@@ -85,20 +100,22 @@ def information_at_end(fit: Fit, elapsed: Array, guess: Array) -> Information:
     while True:
         first = count - length
         window = float(elapsed[-1] - elapsed[first])
-        estimate, deviation, noise, drift = fit(first, guesses)
+        estimate, deviation, explained, drift = fit(first, guesses)
         if deviation >= LIMITS.nothing and not found:
             unexcited = window
         elif deviation < LIMITS.nothing:
             guesses = [*guesses[:1], estimate]
         if found or deviation <= LIMITS.enough or first == 0:
-            found.append(Information(estimate, deviation, window, unexcited, noise, drift))
+            found.append(Information(estimate, deviation, window, unexcited, explained, drift))
         if len(found) > LIMITS.longer or first == 0:
-            return replace(found[0], longer=tuple(found[1:]))
+            if first > 0:  # one more fit, of all samples: a short window hides what is wrong
+                _, _, explained, _ = fit(0, guesses)
+            return replace(found[0], explained=explained, longer=tuple(found[1:]))
         length = min(2 * length, count)
 
 
 def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
-    """Least squares on the outputs that a form measures, with the recording's known motion.
+    """Least squares on the images of a point at rest that a form measures, with the recording's known motion.
 
     It finds the coordinates at the end that explain the samples best when the system's equations run backwards, each
     output weighted by its noise, from a guess or from hidden coordinates of 0, whichever explains the samples better.
@@ -108,19 +125,18 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
     view, scale, unknown = recording.view, recording.scale, form.coordinates
     columns = [recording.names.index(name) for name in form.measured]
     places = [unknown.index(symbol) for symbol in form.x1]
-    size, measured, surface = len(unknown), len(columns), isinstance(view, ImagingSurface)
-    known_noise = (recording.effective_variance or 0.0) if surface else 0.0
+    size, measured = len(unknown), len(columns)
+    known_noise = recording.effective_variance or 0.0
     at_end = recording.motion.known(recording.time[-1:])
 
-    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, Array, float]:
+    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, bool, float]:
         samples, time = recording.outputs[first:, columns], recording.time[first:]
         seen = np.isfinite(samples)
         free = int(seen.sum()) - size
         if free < 1 or not seen.any(axis=0).all():
-            return np.full(size, np.nan), math.inf, np.full(measured, np.nan), 0.0
-        images = images_backwards(recording, first, columns) if surface else _backwards(form, recording, first)
-        doubts = DOUBTS if surface else ()
-        plain = np.zeros(size + len(doubts))
+            return np.full(size, np.nan), math.inf, True, 0.0
+        images = images_backwards(recording, first, columns)
+        plain = np.zeros(size + len(DOUBTS))
         plain[places] = [column[np.isfinite(column)][-1] for column in samples.T]
         begins = [plain, *(np.append(guess * scale, plain[size:]) for guess in guesses)]
         start = min(begins, key=lambda x: float(((samples - images(x))[seen] ** 2).sum()))
@@ -129,7 +145,7 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         for _ in range(2):
 
             def residuals(x: Array, noise: Array = noise) -> Array:
-                return np.append(((images(x) - samples) / noise)[seen], x[size:] / np.array(doubts))
+                return np.append(((images(x) - samples) / noise)[seen], x[size:] / np.array(DOUBTS))
 
             solution = least_squares(residuals, start, x_scale="jac", diff_step=LIMITS.small, max_nfev=50)
             start, rest = solution.x, np.where(seen, samples - images(solution.x), 0.0)
@@ -140,35 +156,63 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         inflation = _inflation(rest / noise, time) if (spread > finest).any() else 1.0
         weighted = solution.jac
         weighted[: free + size] *= (before / noise / inflation)[np.nonzero(seen)[1]][:, None]
-        deviations = np.array([_deviation(weighted, k) for k in range(size + surface)])
-        estimate, drift = start[:size] / scale, 0.0
-        if surface:
-            drift = max(0.0, abs(float(start[size])) - 2 * deviations[size])
-        return estimate, relative_deviation(view, estimate, deviations[:size] / scale, at_end), noise, drift
+        deviations = np.array([_deviation(weighted, k) for k in range(size + 1)])
+        estimate, drift = start[:size] / scale, max(0.0, abs(float(start[size])) - 2 * deviations[size])
+        deviation = relative_deviation(view, estimate, deviations[:size] / scale, at_end)
+        if first > 0:
+            return estimate, deviation, True, drift
+
+        def residuals_alone(x: Array) -> Array:  # without the doubts, which hide a wrong focal length as well
+            return np.where(seen, images(np.append(x, plain[size:])) - samples, 0.0).ravel() / finest
+
+        alone = least_squares(residuals_alone, start[:size], x_scale="jac", diff_step=LIMITS.small, max_nfev=50)
+        rest = residuals_alone(alone.x).reshape(samples.shape) * finest
+        return estimate, deviation, _explained(rest, free, recording), drift
 
     return fit
 
 
-def _backwards(form: PartitionedSystem, recording: Recording, first: int) -> Callable[[Array], Array]:
-    """The measured outputs at the samples from one on, as a function of the coordinates at the end."""
-    from scipy.interpolate import CubicSpline
+def by_smoothing(form: PartitionedSystem, recording: Recording, doubt: Mapping[str, float]) -> Fit:
+    """Least squares on the outputs that a form measures and on its motion, each weighted by its noise.
 
-    plant = Equations((*form.x1, *form.x2), tuple(form.rate), (), form.parameters)
-    order = [form.coordinates.index(symbol) for symbol in plant.state]
-    time = recording.time[first:]
-    span = time[-1] - time[0]
-    nodes = np.linspace(time[-1], time[0], 1 + max(3, math.ceil(span / max(LONGEST_STEP, span / SPLIT))))
-    steps = np.diff(nodes)
-    known = known_signals(recording.motion, recording.view, instants(nodes), recording.unit)
-    table = Table(steps, np.empty((len(steps), EACH + 1, 0)), known, np.empty((len(nodes), 0)))
+    The samples of a camera with an IMU, or of bearings, tell nothing where a point at infinity explains them.
+    """
+    known_noise, at_end = recording.effective_variance or 0.0, recording.motion.known(recording.time[-1:])
 
-    def outputs(x: Array) -> Array:
-        states = solve(plant, x[order], table).states[:, : len(form.x1)]
-        if not np.isfinite(states).all():
-            return np.full((len(time), len(form.x1)), FAR)
-        return np.asarray(CubicSpline(nodes[::-1] - time[0], states[::-1])(time - time[0]))
+    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, bool, float]:
+        part = recording.between(recording.time[first], recording.time[-1])
+        samples, measured = outputs_of(form, part), positions(form, form.measured)
+        seen, size = np.isfinite(samples), len(form.coordinates)
+        free = int(seen.sum()) - size
+        if free < 1 or not seen.any(axis=0).all():
+            return np.full(size, np.nan), math.inf, True, 0.0
+        finest = max(LIMITS.finest * float(np.abs(samples[seen]).max()), math.sqrt(known_noise)) or LIMITS.finest
+        noise, larger = np.full(len(measured), finest), 1.0
+        for _ in range(3):
+            noise = noise * math.sqrt(larger)
+            found = smoothed(form, part, *usual_start(form, part, noise**2), noise**2, doubt)
+            estimate, larger = found.states[-1], float(np.nanmean(found.nis[1:])) / len(measured)
+            if not larger > 1.2:  # chance makes as much of a hundred samples
+                break
+        if not found.arrived or (isinstance(form.view, StateView) and not shows_scale(form, part, noise**2, doubt)):
+            return estimate, math.inf, True, 0.0
+        rest = np.where(seen, samples - found.states[:, measured], 0.0)
+        deviations = np.sqrt(np.maximum(np.diagonal(found.covariance), 0.0)) * _inflation(rest / noise, part.time)
+        deviation = relative_deviation(recording.view, estimate, deviations, at_end)
+        return estimate, deviation, _explained(rest, int(seen.sum()), recording), 0.0
 
-    return outputs
+    return fit
+
+
+def _explained(rest: Array, free: int, recording: Recording) -> bool:
+    """Return True if residuals, 0 where a sample was lost, look like a recording's noise; few far ones are left out."""
+    size = np.abs(rest)
+    usual = float(np.median(size[size > 0])) if size.any() else 0.0
+    near = np.where(size <= LIMITS.wild * usual, rest, 0.0)
+    near = near if np.count_nonzero(near) > (1 - LIMITS.most_wild) * np.count_nonzero(rest) else rest
+    squares, noise = float((near**2).sum()), recording.effective_variance
+    white = float((near[1:] * near[:-1]).sum()) / max(squares, np.finfo(float).tiny)
+    return looks_like_noise(math.sqrt(squares / free), white, None if noise is None else math.sqrt(noise))
 
 
 def _inflation(residuals: Array, time: Array) -> float:

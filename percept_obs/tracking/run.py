@@ -13,18 +13,21 @@ import numpy as np
 
 from percept_obs.compile import Array, Flags, Indices, vectorised
 from percept_obs.recording import Recording
+from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.system.view import View
 from percept_obs.tracking.grid import Hold
 from percept_obs.tracking.information import (
     LIMITS,
     Fit,
     Information,
+    by_smoothing,
     correlation,
     information_at_end,
     one_point,
     relative_deviation,
 )
-from percept_obs.tracking.verdict import REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, number, outcome
+from percept_obs.tracking.smoothing import doubts_of
+from percept_obs.tracking.verdict import BLIND, REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, number, outcome
 from percept_obs.validation import checked
 
 
@@ -253,7 +256,10 @@ class Run:
 
     @property
     def _least_squares(self) -> Fit:
-        return one_point(self.observer.form, self.recording)
+        form, recording = self.observer.form, self.recording
+        if isinstance(recording.view, ImagingSurface):
+            return one_point(form, recording)
+        return by_smoothing(form, recording, doubts_of(self.observer, recording.motion))
 
     def to_pandas(self) -> Any:
         """Return the recording's table with estimates as estimated_y1, and what the observer claims as deviation_y1."""
@@ -271,7 +277,8 @@ class Run:
         deviations, and the observer claims no more than that.  The squares of one standard deviation and of the
         distance to the least-squares estimate must add up to no more, either.  Doubts of the known motion widen the
         deviation: its direction may be wrong by half a degree, its scale may drift, and longer windows may tell
-        something else.  A wrong scale of the whole motion leaves no trace in the samples, so that all rests on the
+        something else.  What a fit of all samples leaves must look like noise, as it must for `diagnose`; that takes
+        two fits more.  A wrong scale of the whole motion leaves no trace in the samples, so that all rests on the
         length of the translation.
 
         Parameters
@@ -296,7 +303,7 @@ class Run:
         known, last, view = self.recording.motion.known(self.time[-1:]), self.estimate[-1], self.view
         said = partial(Trust, judged=view.judged, length=float(self.elapsed[-1]))
         if not np.isfinite(last).all():
-            return said("no estimate")
+            return said("not yet" if self.unobservable.all() else "no estimate")
         if not view.point_shape and not view.inverse(last) > 0:
             return said("nowhere")
         if self.recording.doubt:
@@ -321,6 +328,8 @@ class Run:
             return said("contradicted", disagreement=apart)
         if 2 * widened > tolerance:
             return said("vague")
+        if not found.explained:
+            return said("unexplained")
         difference = float(view.relative_error(found.estimate[None], last[None], known)[0])
         if claimed is not None and not 2 * claimed <= tolerance:
             return said("wide", difference=difference)
@@ -396,6 +405,8 @@ class Run:
         if self.recording.truth is None or not self._known.any():
             said = VERDICTS["followed"].format(time=number(self.elapsed[-1]))
             said += "" if names else self.trust(tolerance).clause
+        elif self.unobservable.all():
+            said = BLIND["not yet"].format(window=number(self.elapsed[-1]), judged=self.view.judged).removeprefix("; ")
         else:
             said = in_words(self.outcome(tolerance, *names), ", ".join(names) or self.view.judged, tolerance, names)
         return said + self._resets_and_gaps()

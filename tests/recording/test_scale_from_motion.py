@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sp
+from scale_study import judged
 
 from percept_obs import Camera, Gaussian, PointsScenario, check, cramer_rao, ekf, luenberger, record, scenarios, track
 from percept_obs.observability.lie import lie_derivatives
@@ -116,8 +117,40 @@ def test_one_landmark_and_a_telephone_s_imu_with_unknown_biases_find_the_scale()
         assert run.relative_error[300] < 0.02
 
 
+@pytest.mark.parametrize("wrong", [{"shake": np.inf}, {"begin": -1.0}, {"begin": np.nan}])
+def test_a_shake_that_cannot_be_is_refused(wrong):
+    with pytest.raises(ValueError, match="it must be finite"):
+        scenarios.held_phone(**wrong)
+
+
+def test_a_telephone_that_is_not_shaken_keeps_its_speed():
+    truth = record(scenarios.held_phone(shake=0.0), 9, Camera(0.5)).truth
+    assert np.ptp(np.linalg.norm(truth[:, 2:5] / truth[:, -1:], axis=1)) < 2e-4  # the left end of each step: 0.04
+
+
+@pytest.mark.slow
+def test_a_filter_with_an_imu_waits_until_its_camera_accelerates():
+    begun, kept = (judged(kind, 1) for kind in ("stop and go", "constant speed"))
+    run, off, trust = begun
+    assert 5 < run.time[np.argmax(run.unobservable == 0)] < 7
+    assert abs(off) < 3
+    assert trust.trusted
+    assert "no estimate from 0 to" in run.verdict()
+    run, _, trust = kept
+    assert run.verdict().startswith("not observable yet: 9 s of samples do not tell the distance")
+    assert trust.kind == "not yet"
+    assert str(trust) == "Not observable yet: 9 s of samples do not tell the distance."
+
+
+@pytest.mark.slow
+def test_a_filter_that_does_not_wait_is_not_trusted_at_constant_speed():
+    run, _, trust = judged("constant speed", 1, given=True)
+    assert run.relative_error[-1] > 0.1
+    assert trust.kind in ("hidden", "nowhere")
+
+
 @pytest.mark.parametrize(
-    ("rows", "said"), [("0,1,2\n", "column"), ("0,0,0,x,0,0,0\n", "x"), ("5,0,0,0,0,0,0\n" * 2, "the time of the row before")]
+    ("rows", "said"), [("0,1,2\n", "column"), ("0,0,0,x,0,0,0\n", "x"), ("5,0,0,0,0,0,0\n" * 2, "of the row before")]
 )
 def test_bad_files_of_an_imu_are_refused_with_a_sentence(tmp_path, rows, said):
     (tmp_path / "data.csv").write_text(rows)

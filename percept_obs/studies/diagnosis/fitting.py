@@ -13,9 +13,10 @@ from percept_obs.compile import Array
 from percept_obs.recording.normal import NormalEquations, project_out
 from percept_obs.studies.diagnosis.causes import NUMBERS
 from percept_obs.studies.diagnosis.tracks import Track, across_of, guess, seen
+from percept_obs.tracking.information import LIMITS
 
-FINEST = 1e-4
-"""Standard deviation of the samples of the best camera, in focal lengths: a twentieth of a pixel."""
+FINEST = LIMITS.camera
+"""Standard deviation of the samples of the best camera, in focal lengths."""
 
 BLOCKS = 10
 """Parts of the recordings over time in which errors may be correlated: few of them hold what changes slowly."""

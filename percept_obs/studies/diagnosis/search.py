@@ -22,6 +22,7 @@ from percept_obs.studies.diagnosis.causes import (
 )
 from percept_obs.studies.diagnosis.fitting import FINEST, Estimate, Fit, fit
 from percept_obs.studies.diagnosis.tracks import Track, guess, numbers_of, path_of, seen
+from percept_obs.tracking.information import looks_like_noise
 
 
 @dataclass(frozen=True)
@@ -30,8 +31,6 @@ class Limits:
 
     surely: float = 5.0  # standard deviations of a number from 0: six are tried, and nobody is to be accused wrongly
     clearly: float = 10.0  # logarithm by which samples are likelier with what is named: e^10 times, for the same reason
-    unexplained: float = 1.5  # times the noise that is said; less may be noise, which few know better than this
-    correlated: float = 0.3  # between residuals in a row: less may be noise that is not said, for white noise has none
     worse: float = 2.0  # where nothing explains everything, times that must be left without a mix-up to name it
     most_left: float = 0.1  # share of the samples' spread that it may leave then; a fit that leaves more has failed
     alike: float = 1.01  # ratio of what two explanations leave: chance makes more than 1 % of a few hundred samples
@@ -194,9 +193,7 @@ def _screened(bare: Fit, noise: float | None) -> list[Fit]:
 
 def _explained(found: Fit, noise: float | None) -> bool:
     """True if what a fit leaves looks like noise."""
-    if noise is not None:
-        return found.rms <= LIMITS.unexplained * max(noise, FINEST)
-    return found.rms <= FINEST or found.correlation <= LIMITS.correlated
+    return looks_like_noise(found.rms, found.correlation, noise)
 
 
 def _trimmed(found: Fit, noise: float | None) -> Fit:

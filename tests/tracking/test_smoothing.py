@@ -1,0 +1,61 @@
+"""The smoother of a whole run, and a filter that starts where it ends."""
+
+import numpy as np
+import pytest
+
+from percept_obs import (
+    Camera,
+    Gaussian,
+    PerspectiveSystem,
+    affine,
+    cramer_rao,
+    ekf,
+    pinhole,
+    record,
+    scenarios,
+    track,
+)
+from percept_obs.observers import gpebo
+from percept_obs.tracking.following import DoesNotFit
+from percept_obs.tracking.smoothing import Belief, shows_scale, smoothed
+
+FORM = PerspectiveSystem(affine(), pinhole()).measure("y1", "y2")
+NOISE = np.full(2, 1e-6)
+SEEN = record(scenarios.ma2005_eq35(), 2, Camera(0.05, Gaussian(1e-3)), seed=1)
+
+
+def test_a_smoother_finds_the_truth_as_well_as_the_bound_allows():
+    prior = np.diag([0.1, 0.1, 4.0])
+    found = smoothed(FORM, SEEN, np.column_stack([SEEN.outputs, np.full(len(SEEN.time), 0.1)]), prior, NOISE, {})
+    bound = cramer_rao(SEEN, FORM, prior, 1e-6)
+    deviations = np.sqrt(np.diagonal(bound.covariance[-1]))
+    assert np.allclose(np.sqrt(np.diagonal(found.covariance)), deviations, rtol=0.02)
+    assert (np.abs(found.states[-1] - SEEN.truth[-1]) < 4 * deviations).all()
+    assert found.deviation == pytest.approx(bound.relative[-1], rel=0.02)
+    off = (found.states - SEEN.truth)[:, -1] / SEEN.truth[:, -1]
+    assert np.abs(off).max() < 0.05  # at the start as well, which a filter has not found
+    assert 1 < np.nanmean(found.nis[1:]) < 3
+
+
+def test_pictures_show_the_scale_only_where_the_camera_moves():
+    assert shows_scale(FORM, SEEN, NOISE, {}) is not None
+    turning = record(
+        scenarios.Scenario(
+            "a turn", affine([[0, 0.2, 0], [-0.2, 0, 0], [0, 0, 0]], [0, 0, 0]), (0.3, 0.2, 2.0), 2.0, pinhole()
+        ),
+        camera=Camera(0.05, Gaussian(1e-3)),
+        seed=1,
+    )
+    assert shows_scale(FORM, turning, NOISE, {}) is None
+
+
+def test_a_filter_goes_on_from_a_belief_as_if_it_had_not_stopped():
+    whole = track(SEEN, ekf(FORM, noise_variance=1e-6), {"y3": 0.3})
+    belief = Belief(whole.estimate[15], whole.covariance[15])
+    rest = track(SEEN.between(SEEN.time[15], 2), ekf(FORM, noise_variance=1e-6), belief)
+    assert np.allclose(rest.estimate, whole.estimate[15:], rtol=1e-9)
+    assert np.allclose(rest.covariance[-1], whole.covariance[-1], rtol=1e-6)
+    with pytest.raises(DoesNotFit, match="cannot start from a covariance"):
+        track(SEEN, gpebo(FORM), belief)
+    with pytest.raises(ValueError, match=r"shapes \(2,\) and \(3, 3\); expected finite \(3,\)"):
+        track(SEEN, ekf(FORM), Belief(belief.estimate[:2], belief.covariance))
