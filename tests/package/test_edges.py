@@ -211,12 +211,6 @@ def test_the_bound_sees_all_of_its_window():
     assert bound.seen[0] == pytest.approx(gramian(recording, 1.0).smallest[0], rel=1e-6)
 
 
-def test_the_noise_that_many_samples_show_is_that_of_the_camera():
-    recording = record(moving_body(2), 6.0, Camera(0.02, Gaussian(0.01)), seed=1)
-    run = track(replace(recording, noise_variance=None), luenberger(recording.view, 1.0), recording.truth[0])
-    np.testing.assert_allclose(run.trust().information.noise, 0.01, rtol=0.15)
-
-
 # Structure and motion.
 
 

@@ -15,7 +15,7 @@ _NUMBERED = re.compile(
 _REMARK = re.compile(
     r"#.*|(?<!\\)%.*|\(\s*\*+\s*\)|(?<=\s\s|.,|ad|\}\.)\s*\((\d{1,2}[a-z]?)\)\s*[.,]?\s*$", re.MULTILINE
 )
-_TIMES = re.compile(r"(?<![\w\\])t\s*(>=?|<=?|\\geq?|\\in)\s*(0|t_?0|\[.*?[)\]])")
+_TIMES = re.compile(r"(?<![\w\\])(?<!if )t\s*(>=?|<=?|\\geq?|\\in)\s*((0|t_?0)(?![\w.])|\[.*?[)\]])")
 _NAMED_BY_COLON = re.compile(r"[\s{]*[A-Za-z]\w*(\d|dot|')\s*:(?!=)(?=[^=<>:]*$)")
 _TEXT_COMMAND = re.compile(r"\\(text|textrm|mbox|mathrm)\s*\{([^{}]*)\}")
 _WORDS_OF_CASES = re.compile(r"\s*(for|if|when|otherwise|else)[,.]?\s*|\s*\w+\s*")
@@ -57,8 +57,8 @@ def _bare(line: str, is_name: Callable[[str], bool]) -> str:
             line = line.replace("{", " ", 1).rstrip().removesuffix("}")
     words = re.split(r"(\s+)", line)
     first = next((k for k, word in enumerate(words) if word.strip()), 0)
-    named = words[first].endswith(":") and is_name(words[first][:-1])  # "y1: 2 + 2" is not two lines
-    return "".join(word if k == first and named else _line_end_for_stop(word) for k, word in enumerate(words))
+    begins = words[first].endswith(":") and is_name(words[first][:-1])  # "y1: 2 + 2" is not two lines
+    return "".join(word if k == first and begins else _line_end_for_stop(word) for k, word in enumerate(words))
 
 
 def _remark(found: re.Match[str], is_name: Callable[[str], bool]) -> str:
