@@ -21,9 +21,7 @@ FOLDER = _INSTALLED if _INSTALLED.is_dir() else Path(__file__).parents[2] / "not
 FOLDED = re.compile(r"<details><summary>.*?</summary>(.*?)</details>", re.DOTALL)
 """An answer as a notebook folds it."""
 
-UNWRITTEN = "Answer first, in your own words: put a sentence in quotes in the place of the dots. Then run this cell."
-LEAST = 3
-"""Least number of words of an answer."""
+UNWRITTEN = "Answer first, in your own words: put them in quotes in the place of the dots. Then run this cell."
 
 
 def notebooks() -> dict[str, Any]:
@@ -51,7 +49,7 @@ def model_answer(mine: str | EllipsisType, key: str) -> Attempt:
     Parameters
     ----------
     mine : str or ...
-        One's own answer, in a sentence.
+        One's own answer, in words; "no" is one.
     key : str
         Key of the question, as the students' copy of a notebook has it.
 
@@ -66,9 +64,9 @@ def model_answer(mine: str | EllipsisType, key: str) -> Attempt:
     Examples
     --------
     >>> print(model_answer(..., "0"))
-    Answer first, in your own words: put a sentence in quotes in the place of the dots. Then run this cell.
+    Answer first, in your own words: put them in quotes in the place of the dots. Then run this cell.
     """
-    if not isinstance(mine, str) or len(mine.split()) < LEAST:
+    if not isinstance(mine, str) or not re.search(r"\w", mine):
         return Attempt(None, UNWRITTEN)
     found = _answers().get(key)
     if found is None:
