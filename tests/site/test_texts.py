@@ -16,7 +16,7 @@ import pytest
 from notebook_exercises import code as code_of
 from places import NOTEBOOKS
 
-from percept_obs import cli
+from percept_obs import check, cli
 from percept_obs.observers.family import Family
 from percept_obs.site import TEXTS
 from percept_obs.site.named import named
@@ -61,6 +61,8 @@ def test_the_lines_of_the_tour_run_and_give_what_they_say():
     assert names["review"].right is False
     assert "b3" in str(names["review"].hint(2))
     assert "10 %" in str(names["run"].verdict())
+    assert check(names["from_mathpix"], names["system"]).right
+    assert "the sign of b3 y3^2 is wrong" in str(check(names["from_a_chat"], names["system"]).hint(3))
 
 
 @pytest.mark.slow
