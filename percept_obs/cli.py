@@ -308,7 +308,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"percept-obs: {error}", file=sys.stderr)
         return getattr(error, "code", 2)
     except OSError as error:
-        print(f"percept-obs: cannot use {error.filename}: {error.strerror}", file=sys.stderr)
+        said = f"cannot use {error.filename}: {error.strerror}" if error.strerror else error
+        print(f"percept-obs: {said}", file=sys.stderr)
         return 2
 
 

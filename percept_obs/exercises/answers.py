@@ -179,7 +179,7 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
     Raises
     ------
     ValueError
-        If `judge` does not give a number that is asked for.
+        If no number is asked for, or `judge` does not give one that is.
 
     See Also
     --------
@@ -190,6 +190,8 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
     >>> print(reach(2.0, lambda gain: {"seconds": 6 / gain}, seconds=2))
     Not reached yet: seconds 3 (2 is allowed).
     """
+    if not most:
+        raise ValueError("nothing is to be reached; give the largest allowed value of a number by name, as seconds=2")
     if isinstance(mine, EllipsisType):
         return Attempt(None, UNANSWERED)
     try:

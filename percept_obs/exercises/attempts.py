@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from percept_obs.checking import Review
 from percept_obs.exercises.answers import Attempt
+from percept_obs.validation import checked
 
 WRITTEN = re.compile(r"\*Task ([\w-]+): attempt (\d{1,6}), hints (\d{1,6}), minutes (\d{1,6})\.\*")
 """A count as `tally` writes it."""
@@ -45,6 +46,7 @@ class _Tallied:
         return self.reply._repr_markdown_() + count
 
 
+@checked
 def tally(reply: Attempt | Review, task: str) -> _Tallied:
     """Return a reply with the number of attempts at its task, which grows if there is an answer.
 

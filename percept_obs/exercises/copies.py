@@ -10,7 +10,8 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from percept_obs.exercises.models import FOLDED, answers_in, key_of
+from percept_obs.exercises.models import FOLDED, answers_in, cells_of, key_of
+from percept_obs.validation import checked
 
 Notebook = Mapping[str, Any]
 """A notebook as its file has it."""
@@ -25,6 +26,7 @@ CHECK = "-check"
 """End of the names of cells that check an answer; before it stands the name of the answer's cell."""
 
 
+@checked
 def stub(solution: str) -> str:
     """Return the stub of a solution: its answer's name, and dots for the answer.
 
@@ -64,7 +66,7 @@ def students_copy(notebook: Notebook) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If a solution does not end by giving the answer a name.
+        If it is no notebook, or a solution does not end by giving the answer a name.
 
     See Also
     --------
@@ -76,7 +78,8 @@ def students_copy(notebook: Notebook) -> dict[str, Any]:
     >>> students_copy({"cells": [cell]})["cells"][0]["source"]
     ['gain = ...  # your answer']
     """
-    return {**notebook, "cells": [copied for cell in notebook["cells"] for copied in _for_students(cell)]}
+    cells = [copied for cell in cells_of(notebook) for copied in _for_students(cell)]
+    return {**notebook, "cells": cells}
 
 
 COPIES: Mapping[str, Callable[[Notebook], dict[str, Any]]] = {"students": students_copy, "teachers": dict}

@@ -11,6 +11,8 @@ from decimal import Decimal
 from hashlib import sha256
 from typing import Any
 
+from percept_obs.exercises.models import cells_of
+
 OURS = "percept_obs"
 """Key of what a cell or a notebook says to this package in its metadata."""
 
@@ -54,7 +56,7 @@ def individual(notebook: Mapping[str, Any], student: str) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If the name is empty.
+        If it is no notebook, or the name is empty.
 
     See Also
     --------
@@ -76,7 +78,7 @@ def individual(notebook: Mapping[str, Any], student: str) -> dict[str, Any]:
     if not same_name(student):
         raise ValueError("an empty name has no tasks; give a student's name or number")
     cells, task = [], None
-    for cell in notebook["cells"]:
+    for cell in cells_of(notebook):
         tags, text = set(cell["metadata"].get("tags", ())), "".join(cell["source"])
         if cell["cell_type"] == "markdown" and "exercise" in tags:
             task = _Task.of(cell, student)

@@ -30,6 +30,14 @@ def notebooks() -> dict[str, Any]:
     return {file.name: json.loads(file.read_bytes()) for file in sorted(files, key=lambda file: file.name)}
 
 
+def cells_of(notebook: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the cells of a notebook; a ValueError if it is none."""
+    cells = notebook.get("cells") if isinstance(notebook, Mapping) else None
+    if not isinstance(cells, list):
+        raise ValueError("this is no notebook; give what json.loads makes of an .ipynb file, which has a list of cells")
+    return cells
+
+
 def answers_in(cell: Mapping[str, Any]) -> list[str]:
     """Return the answers that a cell of a notebook gives in words."""
     tags, text = cell["metadata"].get("tags", ()), "".join(cell["source"])

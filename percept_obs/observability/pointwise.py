@@ -88,7 +88,7 @@ class InstantaneousObservability:
         return growth if one_centre else None
 
     def circle(self, threshold: sp.Expr | float) -> tuple[tuple[sp.Expr, ...], sp.Expr]:
-        """Centre and radius of the region where |w| is below a threshold; a ValueError if it is no circle.
+        """Centre and radius of the region where |w| is below a threshold; a ValueError if it is no circle, or negative.
 
         With both image coordinates the centre is the focus of expansion (Ma 2005, p. 66).
         """
@@ -97,8 +97,11 @@ class InstantaneousObservability:
                 f"measuring {', '.join(self.form.measured)}, the region where w is small is no circle; "
                 "look at the zero set and the window instead"
             )
+        below = expression(threshold, "the threshold")
+        if below.is_negative:
+            raise ValueError(f"the threshold is {below}; |w| is never below a negative number: give one from 0 on")
         centre = tuple(sp.cancel(self.zero_set[0][x]) for x in self.form.x1)
-        return centre, sp.Abs(expression(threshold, "the threshold")) / sp.sqrt(self.growth)
+        return centre, sp.Abs(below) / sp.sqrt(self.growth)
 
     def _repr_latex_(self) -> str:
         verdict = r"\text{an instant can suffice}"

@@ -86,13 +86,14 @@ def find(places: Sequence[str | int] = (), paper: str = "") -> tuple[Ledger, ...
     >>> ledger.paper, [entry.place for entry in ledger.entries]
     ('Ma, Chen and Moore 2005', ['(38)'])
     """
-    ledgers = [ledger for ledger in LEDGERS if paper.casefold() in ledger.paper.casefold()]
+    called = {ledger: f"{name} {ledger.paper}".casefold() for name, ledger in NAMED.items()}
+    ledgers = [ledger for ledger in LEDGERS if paper.casefold() in called[ledger]]
     if not ledgers:
         raise ValueError(f"no paper is called {paper!r}; there are {'; '.join(each.paper for each in LEDGERS)}")
     entries = [entry for ledger in ledgers for entry in ledger.entries]
     for place in places:
         if not any(entry.named(place) for entry in entries):
-            near = get_close_matches(str(place), [entry.place for entry in entries], 5, 0.3)
+            near = get_close_matches(str(place), {entry.place: None for entry in entries}, 5, 0.3)
             raise ValueError(f"there is no {place!r}; near to it are {', '.join(near) or 'none'}; name one as printed")
     if not places:
         return tuple(ledgers)

@@ -139,6 +139,8 @@ def ensemble(
         raise ValueError(f"over has {', '.join(unknown)}, which cannot vary here; there are {', '.join(names)}")
     if not several.size or several.ndim != 1 or several.dtype.kind not in "iu" or several.min() < 0:
         raise ValueError(f"the seeds are {seeds!r}; give whole numbers from 0 on, or how many of them")
+    if len(np.unique(several)) < len(several):
+        raise ValueError("a seed stands twice; the same seed gives the same run again, so give each once")
     positive(step=step)
     steps = duration / min(step, camera.period)
     limit(steps, "steps", "take longer steps or a shorter time")

@@ -319,6 +319,11 @@ def starts(count: int, seed: int = 0) -> Array:
     count : int
     seed : int
 
+    Raises
+    ------
+    ValueError
+        If the count is not positive.
+
     See Also
     --------
     servo : Begins there.
@@ -329,6 +334,8 @@ def starts(count: int, seed: int = 0) -> Array:
     >>> starts(3).shape
     (3, 6)
     """
+    if count < 1:
+        raise ValueError(f"the count is {count}; give the number of poses, at least 1")
     generator, found = np.random.default_rng(seed), list[Array]()
     high = np.array([0.5, 0.5, 2.0, 0.4, 0.4, 1.0])
     while len(found) < count:

@@ -26,6 +26,7 @@ from percept_obs.validation import (
     numbers,
     positive,
     warn,
+    with_article,
 )
 
 Coefficient = tuple[Any, sp.ImmutableMatrix]
@@ -332,7 +333,9 @@ def bound(
     if len(missing) == len(coefficients):
         return Motion(name, A, b, symbols)
     if missing:
-        raise ValueError(f"a {name} motion takes all of its coefficients or none; give also {', '.join(missing)}")
+        raise ValueError(
+            f"{with_article(name)} motion takes all of its coefficients or none; give also {', '.join(missing)}"
+        )
     if any(map(_has_symbols, values)):
         entries = [e for value, block in coefficients for e in matrix(value, _title(block), *block.shape)]
         A, b = (each.xreplace(dict(zip(symbols, entries, strict=True))) for each in (A, b))

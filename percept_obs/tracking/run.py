@@ -289,7 +289,7 @@ class Run:
         Raises
         ------
         ValueError
-            If the tolerance is not positive.
+            If the tolerance is not positive, or infinite.
 
         Examples
         --------
@@ -298,8 +298,8 @@ class Run:
         >>> track(record(scenarios.ma2005_eq35(), 5), ibo(form)).trust().kind
         'agrees'
         """
-        if not tolerance > 0:
-            raise ValueError(f"the tolerance is {tolerance}; it must be positive")
+        if not 0 < tolerance < math.inf:
+            raise ValueError(f"the tolerance is {tolerance}; it must be a positive number, such as 0.1 for 10 %")
         known, last, view = self.recording.motion.known(self.time[-1:]), self.estimate[-1], self.view
         said = partial(Trust, judged=view.judged, length=float(self.elapsed[-1]))
         if not np.isfinite(last).all():

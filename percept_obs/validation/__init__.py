@@ -23,6 +23,7 @@ from percept_obs.validation.kinds import Coefficients as Coefficients
 from percept_obs.validation.kinds import Entries as Entries
 from percept_obs.validation.kinds import Kind as Kind
 from percept_obs.validation.kinds import are_numbers as are_numbers
+from percept_obs.validation.kinds import with_article as with_article
 from percept_obs.validation.limits import MOST_TERMS as MOST_TERMS
 from percept_obs.validation.limits import TooMuchWork as TooMuchWork
 from percept_obs.validation.limits import limit as limit

@@ -21,9 +21,8 @@ def missing(*modules: str) -> list[str]:
 def needed(extra: str, *modules: str) -> None:
     """Raise ModuleNotFoundError if optional modules are missing, and say which extra of this package brings them."""
     if lacking := missing(*modules):
-        raise ModuleNotFoundError(
-            f'{", ".join(lacking)} is missing; get it with: python -m pip install "percept-obs[{extra}]"'
-        )
+        words = "is missing; get it with" if len(lacking) == 1 else "are missing; get them with"
+        raise ModuleNotFoundError(f'{", ".join(lacking)} {words}: python -m pip install "percept-obs[{extra}]"')
 
 
 def load_pandas() -> Any:

@@ -212,4 +212,4 @@ def _instance(cls: Any) -> Kind:
 
 def with_article(name: str) -> str:
     """Name of a class as a noun."""
-    return f"an {name}" if name[0] in "AEIO" else f"a {name}"
+    return f"an {name}" if name[0] in "AEIOaeio" else f"a {name}"

@@ -422,5 +422,5 @@ def test_what_is_missing_is_named_with_the_command_that_gets_it(monkeypatch, cap
     assert 'furo is missing; get it with: python -m pip install "percept-obs[site]"' in capsys.readouterr().err
     monkeypatch.setattr("percept_obs.validation.environment.find_spec", lambda module: "lite" not in module or None)
     assert cli.main(["site", str(tmp_path / "new"), "--python"]) == 1
-    assert "jupyterlite_core, jupyterlite_pyodide_kernel is missing; get it with" in capsys.readouterr().err
+    assert "jupyterlite_core, jupyterlite_pyodide_kernel are missing; get them with" in capsys.readouterr().err
     assert not Path(tmp_path / "new").exists()

@@ -79,6 +79,18 @@ class BadSettings(traitlets.TraitError, ValueError):
     """Settings that are refused; a TraitError, so that traitlets takes back what came with them."""
 
 
+class Fixed(dict[str, Any]):
+    """Settings that are replaced as a whole, for of a change within them nobody would hear."""
+
+    def _refuse(self, *_: Any, **__: Any) -> Any:
+        raise TypeError('settings change as a whole: lab.settings = {**lab.settings, "duration": 5.0}')
+
+    __setitem__ = __delitem__ = __ior__ = update = pop = popitem = clear = setdefault = _refuse
+
+    def __reduce__(self) -> Any:  # a copy is a plain one
+        return dict, (dict(self),)
+
+
 class _Checked(traitlets.TraitType[Settings, Settings]):
     """Settings, or a view, that the lab checks, also those that equal the present ones, as True equals 1."""
 
@@ -90,7 +102,7 @@ class _Checked(traitlets.TraitType[Settings, Settings]):
         except ValueError as error:
             raise BadSettings(str(error)) from None
         lab.write_down(checked)
-        return checked
+        return Fixed(checked)
 
 
 class Lab(anywidget.AnyWidget):
