@@ -78,7 +78,7 @@ LABS = {
         "The lab of one point. On the left what the camera sees: the point, how it moves and how its estimate "
         "expects it to, and the focus of expansion in a hatched circle. On the right the world from above, with the "
         "point and its estimate on one ray. Below, the two distances over 4 s, which agree within 10 % from 2.3 s "
-        "on. One sentence stands above.",
+        "on. One sentence and three questions stand above.",
     ),
     "structure_lab": (
         structure_lab,
@@ -105,7 +105,7 @@ CAPTIONS = {
 }
 """What to look for in each picture of the gallery."""
 
-PLAYS = f"{LABS['observer_lab'][1]} The picture plays these 4 s again and again."
+PLAYS = f"{LABS['observer_lab'][1].replace(' and three questions stand', ' stands')} The picture plays these 4 s again and again."
 WITHOUT_CONTROLS = ".percept-lab button { visibility: hidden } .percept-lab :is(.handy, .strip) { display: none }"
 """A picture cannot be pressed, so it shows nothing to press."""
 ENDS = 0.99
