@@ -228,7 +228,7 @@ def camera_ways(loops: Mapping[str, Servoing], start: int = 0, axes: Sequence[Ax
     >>> from percept_obs import figures
     >>> from percept_obs.studies.servoing import servo, starts
     >>> print(figures.camera_ways({"true depth": servo(starts(3), "true", duration=6.0)}).text.split(". ")[1])
-    true depth: the camera begins 0.7 m from the goal, and ends 0 m from it
+    true depth: the camera begins 0.7 m from the goal, and ends 0.01 m from it.
     """
     if not loops:
         raise ValueError("there are no loops to draw; servo(starts(20), 'true') makes one")

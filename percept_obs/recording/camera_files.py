@@ -40,7 +40,8 @@ class Mount(NamedTuple):
 
     Examples
     --------
-    >>> Mount((0.1, 0, 0.2), ((1, 0, 0), (0, 1, 0), (0, 0, 1))).shift
+    >>> mount = Mount((0.1, 0, 0.2), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    >>> mount.shift
     0.0
     """
 

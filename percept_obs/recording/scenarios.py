@@ -161,7 +161,7 @@ def held_phone(imu: Imu | None = None, seed: Seed = 0, shake: float = 1.0, begin
     >>> from percept_obs import record, scenarios
     >>> recording = record(scenarios.held_phone(), 2)
     >>> (1 / recording.truth[[0, -1], -1]).round(2).tolist()
-    [3.0, 2.73]
+    [3.0, 2.72]
     """
     if not (np.isfinite(shake) and begin >= 0):
         raise ValueError(f"the shake is {shake} and begins at {begin} s; it must be finite, and begin at 0 or later")

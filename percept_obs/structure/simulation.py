@@ -172,8 +172,8 @@ def grid_patch(side: float, count: int = 3) -> Array:
     >>> from percept_obs.structure import grid_patch
     >>> grid_patch(0.2).shape
     (9, 3)
-    >>> grid_patch(0.2)[0].tolist()
-    [0.0, 0.0, 0.0]
+    >>> grid_patch(0.2)[1].tolist()
+    [0.1, 0.0, 0.0]
     """
     if not (np.isfinite(side) and side > 0) or count < 3 or count % 2 == 0:
         raise ValueError(f"a patch needs an odd count from 3 on and a positive side, not {count} points and {side} m")

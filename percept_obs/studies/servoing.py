@@ -206,12 +206,13 @@ def servo(
     starts: ArrayLike,
     depth: str | Observer,
     ratio: float = 1.0,
+    gain: float = 1.0,
     looking: float = 0.0,
     noise: float = 1e-3,
     duration: float = 10.0,
     seed: int = 0,
 ) -> Servoing:
-    """Close the loop (v_c, w_c) = -lambda L(y, 1/Z)^+ (y - y*), with lambda = 1/s, from several starts.
+    """Close the loop (v_c, w_c) = -lambda L(y, 1/Z)^+ (y - y*) from several starts.
 
     Parameters
     ----------
@@ -223,6 +224,8 @@ def servo(
         and knows the commanded velocities.
     ratio : float
         Factor of the depth that is not observed: believed over true, or over that of the goal.
+    gain : float
+        lambda in 1/s.
     looking : float
         Speed in m/s for an image error of 1 that is added where `steering` turns the velocity to see more, summed over
         the points; it vanishes with the error.
@@ -262,7 +265,7 @@ def servo(
     poses = np.asarray(starts, dtype=float)
     if poses.ndim != 2 or poses.shape[1] != 6 or not np.isfinite(poses).all():
         raise ValueError(f"starts have shape {poses.shape}; give finite rows of a translation and a rotation, (S, 6)")
-    positive(ratio=ratio, duration=duration)
+    positive(ratio=ratio, gain=gain, duration=duration)
     observed = depth if isinstance(depth, Observer) else None
     if observed is None and depth not in ("true", "constant"):
         raise ValueError(f"the depth {depth!r} is none of 'true', 'constant' and an Observer, such as ekf(FORM)")
@@ -288,7 +291,7 @@ def servo(
             believed = (x[..., 2] if depth == "true" else np.broadcast_to(goal[:, 2], y.shape[:2])) / ratio
         seen = np.moveaxis(np.concatenate([y, believed[..., None]], axis=-1), -1, 0)
         L = np.stack(_interaction(*seen), axis=-1).reshape(len(y), -1, 6)
-        u = -(np.linalg.pinv(L) @ e[:, :, None])[..., 0]
+        u = -gain * (np.linalg.pinv(L) @ e[:, :, None])[..., 0]
         if looking:
             turn = np.stack(_turning(*seen, *_parameters(u))).sum(axis=-1).T
             turn /= np.linalg.norm(turn, axis=1, keepdims=True)

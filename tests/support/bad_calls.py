@@ -183,7 +183,7 @@ def calls():
             | {"frame": "camera", "sigma": (0.001, 0.001), "correlated": 0.1},
         ),
         (po.read_tum, {"path": folder / "poses.txt", "clock": po.Clock()}),
-        (po.read_euroc, {"path": folder / "data.csv", "clock": po.Clock()}),
+        (po.read_euroc, {"path": folder / "data.csv", "clock": po.Clock(tick=1e-9)}),
         (read_stereo_mat, {"path": folder / "s.mat", "shortest": 0.5, "gap": 1.0}),
         (
             po.Recording.from_csv,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from percept_obs.compile import vectorised
+from percept_obs.compile import Array, vectorised
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.labs.observer.registry import Registry
 from percept_obs.labs.observer.texts import BLOCKS
@@ -49,20 +49,28 @@ def tracks_of(film: Footage) -> tuple[str, dict[str, Recording]]:
 def track_for_the_page(recording: Recording, motion: str, surface: str, registry: Registry) -> dict[str, Any]:
     """A recording in numbers, with the name of its own motion; times count from its first sample.
 
-    A lost sample is null, since JSON knows no NaN.
+    A lost sample is null, and so is a truth that is not known, since JSON knows no NaN.
     """
     measured = next(iter(recording.distances.items()), None) if recording.truth is None else None
     return {
         "names": recording.names,
         "begin": float(recording.time[0]),
         "time": recording.elapsed.tolist(),
-        "samples": [[None if np.isnan(v) else v for v in row] for row in recording.outputs.tolist()],
-        "truth": None if recording.truth is None else recording.truth.tolist(),
-        "measured": measured and [measured[0], [None if np.isnan(v) else v for v in measured[1].tolist()]],
+        "samples": _numbers(recording.outputs),
+        "truth": None if recording.truth is None else _numbers(recording.truth),
+        "measured": measured and [measured[0], _numbers(measured[1])],
         **fitting(recording, surface),
         "kind": motion,
         "refused": refused_for(recording.motion, registry, "recording's"),
     }
+
+
+def _numbers(values: Array) -> list[Any]:
+    """Return numbers as lists, with None for NaN."""
+    numbers = values.astype(object)
+    numbers[np.isnan(values)] = None
+    found: list[Any] = numbers.tolist()
+    return found
 
 
 def fitting(recording: Recording, surface: str) -> Settings:

@@ -213,16 +213,17 @@ def _trimmed(found: Fit, noise: float | None) -> Fit:
 def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> Fit:
     """Fit of all numbers, with the mix-up that explains the samples; the first fit has none."""
     first, *others = screened
-    told = [] if _explained(first, noise) else [each for each in others if _explained(each, noise)]
+    less = [each for each in others if each.typical < first.typical]
+    told = [] if _explained(first, noise) else [each for each in less if _explained(each, noise)]
     other = _fewest(_joint(_likeliest(told), keys)) if told else None
-    if other and not any(each.wrong for each in told):
-        return other
+    if other and not other.wrong and not any(each.wrong for each in told):
+        return other  # a mix-up without any number explains all
     best = _joint(first, keys)
-    if other and (not _explained(best, noise) or other.gain(_fewest(best)) > 0):
+    if other and (not _explained(best, noise) or other.gain(_fewest(best)) > LIMITS.clearly):
         return other
     if _explained(best, noise):
         return best
-    better = sorted((each for each in others if each.typical < first.typical), key=lambda each: each.typical)
+    better = sorted(less, key=lambda each: each.typical)
     for other in (_joint(each, keys) for each in better[: LIMITS.tried]):
         most = LIMITS.most_left * float(np.median([track.spread for track in other.tracks]))
         plain = MIX_UPS[other.mix_up].plain

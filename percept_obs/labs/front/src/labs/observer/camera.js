@@ -103,7 +103,7 @@ export function readTrack(track) {
   const both = track.samples.map((row) => ["y1", "y2"].map((name) => number(row[track.names.indexOf(name)] ?? null)));
   return {
     time: Float64Array.from(track.time),
-    truth: track.truth && Float64Array.from(track.truth.flat()),
+    truth: track.truth && Float64Array.from(track.truth.flat(), number),
     outputs: Float64Array.from(both.flat()),
     leavesAt: null,
   };
