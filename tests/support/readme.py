@@ -105,7 +105,8 @@ CAPTIONS = {
 }
 """What to look for in each picture of the gallery."""
 
-PLAYS = f"{LABS['observer_lab'][1].replace(' and three questions stand', ' stands')} The picture plays these 4 s again and again."
+PLAYS = LABS["observer_lab"][1].replace(" and three questions stand", " stands")
+PLAYS += " The picture plays these 4 s again and again."
 WITHOUT_CONTROLS = ".percept-lab button { visibility: hidden } .percept-lab :is(.handy, .strip) { display: none }"
 """A picture cannot be pressed, so it shows nothing to press."""
 ENDS = 0.99
