@@ -94,7 +94,9 @@ def _words(line: str, is_name: Callable[[str], bool]) -> Iterator[re.Match[str]]
     end = -1  # of the last such word
     for word in _WORD.finditer(line):
         before, after = line[: word.start()].rstrip(" "), line[word.end() :].lstrip(" ")
-        beside = before[-1:] in tuple("+-*/^=<>&_\\([{") or bool(re.match(r"[-+*/^=_)}<>|\]]|:=", after))
+        beside = before[-1:] in tuple("+-*/^=<>&_\\([{") or bool(
+            re.match(r"[-+*/^=_)}<>|\]]|:=|\\([lg]eq?|neq?|cdot|times)(?![A-Za-z])", after)
+        )
         if len(word[0]) == 1:  # "a" in a sentence, but not the letter a
             following = _WORD.match(line, len(line) - len(after))
             named = following is not None and is_name(following[0])
