@@ -21,6 +21,7 @@ _TEXT_COMMAND = re.compile(r"\\(text|textrm|mbox|mathrm)\s*\{([^{}]*)\}")
 _WORDS_OF_CASES = re.compile(r"\s*(for|if|when|otherwise|else)[,.]?\s*|\s*\w+\s*")
 _FORMULA = re.compile(r"[+*/^=<>()\[\]{}&\\]|(^|\s)-|-(\s|$)|[\d_']\w*\s+\w*[\d_']")
 _EQUATION = re.compile(r"[\s\\\w{}'_^()\u0300-\u036f,/.]*?(:?=|<|>|\\[ngl]e)")
+_SIGN = re.compile(r"[-+*/^=_)}<>|\]]|:=|\\([lg]eq?|neq?|cdot|times)(?![A-Za-z])")
 _EITHER = r"(?:\\text\s*\{\s*)?(?<![\w\\])(?:or|oder|ou)(?!\w)(?:\s*\})?(?=[^\n]{0,300}(?:\\neq?|!=|>))"
 
 
@@ -94,9 +95,7 @@ def _words(line: str, is_name: Callable[[str], bool]) -> Iterator[re.Match[str]]
     end = -1  # of the last such word
     for word in _WORD.finditer(line):
         before, after = line[: word.start()].rstrip(" "), line[word.end() :].lstrip(" ")
-        beside = before[-1:] in tuple("+-*/^=<>&_\\([{") or bool(
-            re.match(r"[-+*/^=_)}<>|\]]|:=|\\([lg]eq?|neq?|cdot|times)(?![A-Za-z])", after)
-        )
+        beside = before[-1:] in tuple("+-*/^=<>&_\\([{") or bool(_SIGN.match(after))
         if len(word[0]) == 1:  # "a" in a sentence, but not the letter a
             following = _WORD.match(line, len(line) - len(after))
             named = following is not None and is_name(following[0])
