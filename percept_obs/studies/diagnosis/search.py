@@ -219,9 +219,10 @@ def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> 
     if other and not other.wrong and not any(each.wrong for each in told):
         return other  # a mix-up without any number explains all
     best = _joint(first, keys)
-    if other and (not _explained(best, noise) or other.gain(_fewest(best)) > LIMITS.clearly):
+    explained = _explained(best, noise)
+    if other and (other.gain(_fewest(best)) > LIMITS.clearly or not (other.wrong or explained)):
         return other
-    if _explained(best, noise):
+    if other or explained:
         return best
     better = sorted(less, key=lambda each: each.typical)
     for other in (_joint(each, keys) for each in better[: LIMITS.tried]):
