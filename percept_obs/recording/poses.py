@@ -144,12 +144,14 @@ class Poses:
         mount = Poses(np.arange(2.0), np.tile(position, (2, 1)), np.stack([orientation, orientation]))
         (shift,) = numbers([shift], "the shift of the clocks", 1)
         place, turn = mount.position[0], mount.rotation[0]
+        matrix = turn.as_matrix()
+        matrix.setflags(write=False)
         return replace(
             self,
             time=self.time - shift,
             position=self.position + self.rotation.apply(place.copy()),
             orientation=(self.rotation * turn).as_quat(),
-            mount=(place, turn.as_matrix()),
+            mount=(place, matrix),
         )
 
     def path(self) -> CameraPath:

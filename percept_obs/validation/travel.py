@@ -23,7 +23,7 @@ def _reduced(value: Any) -> tuple[Any, ...]:
     kind, args = type(value), {"args": value.args} if isinstance(value, BaseException) else {}
     parts = {k: part for k, part in vars(value).items() if not isinstance(getattr(kind, k, None), cached_property)}
     mappings = {name: dict(part) for name, part in parts.items() if isinstance(part, MappingProxyType)}
-    arrays = {name for name, part in parts.items() if isinstance(part, np.ndarray) and not part.flags.writeable}
+    arrays = {name for name, part in parts.items() if _sealed(part)}
     return _made, (kind, parts | mappings | args, arrays | mappings.keys())
 
 
@@ -34,7 +34,15 @@ def _made(kind: Any, parts: dict[str, Any], sealed: Collection[str]) -> Any:
     return value
 
 
+def _sealed(part: Any) -> bool:
+    if isinstance(part, tuple):
+        return bool(part) and all(map(_sealed, part))
+    return isinstance(part, np.ndarray) and not part.flags.writeable
+
+
 def _seal(part: Any) -> Any:
+    if isinstance(part, tuple):
+        return tuple(map(_seal, part))
     if isinstance(part, dict):
         return MappingProxyType({key: _seal(each) for key, each in part.items()})
     if isinstance(part, np.ndarray):

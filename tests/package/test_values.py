@@ -27,6 +27,7 @@ from percept_obs.checking import target_of
 from percept_obs.film import example_film, read_film
 from percept_obs.papers import MA2005
 from percept_obs.papers.entries import Finding
+from percept_obs.recording.camera_files import Mount
 from percept_obs.recording.colmap import ColmapModel
 from percept_obs.recording.stereo_mat import StereoTracks
 from percept_obs.site.pages import public
@@ -52,6 +53,7 @@ MADE = {
     po.FunctionObserver: lambda: po.FunctionObserver("kept", BOTH, np.copy, kept, np.copy),
     Finding: lambda: MA2005["(10)"].finding,  # which another test may have made already
     po.film.Film: lambda: read_film(example_film()),
+    Mount: lambda: Mount((0.1, 0.0, 0.2), ((1, 0, 0), (0, 1, 0), (0, 0, 1))),
 }
 """Values of classes whose docstrings make none."""
 
