@@ -84,6 +84,8 @@ def on_a_page(notebook: nbformat.NotebookNode) -> nbformat.NotebookNode:
             cell = new_markdown_cell(_folded(solution, cell))
         else:
             cell.source = NEEDED.sub("", cell.source)
+            for output in cell.get("outputs", []):
+                output.get("data", {}).pop(SHEET, None)  # which only an exercise shows
         if "notebook" not in tags and cell.source and cell.source != solution:
             page.cells.append(cell)
     return page
