@@ -210,7 +210,7 @@ def test_every_notebook_was_run_and_has_a_title_and_slides(pages):
 def test_a_word_is_found_from_a_disk(pages, browser):
     page = browser.new_page(offline=True)
     complaints = complaints_of(page)
-    page.goto((pages / "index.html").as_uri())
+    page.goto((pages / "tour.html").as_uri())
     page.locator(".sidebar-search").fill("excitation")
     page.keyboard.press("Enter")
     page.get_by_text("Search finished").wait_for()
