@@ -151,8 +151,9 @@ def _own(mix_up: str) -> tuple[str, list[str], dict[str, Array]]:
 
 
 def _together(mix_up: str, keys: Sequence[str]) -> list[str]:
-    """Keys of the numbers that can be fitted with a mix-up; poses drift by no bias."""
-    kept = [key for key in keys if not (MIX_UPS[mix_up].poses and key in (BIAS, DRIFT))]
+    """Keys of the numbers that can be fitted with a mix-up; poses drift by no bias, and a fisheye is a lens already."""
+    left_out = (BIAS, DRIFT) if MIX_UPS[mix_up].poses else (BEND,) if MIX_UPS[mix_up].fisheye else ()
+    kept = [key for key in keys if key not in left_out]
     return [*dict.fromkeys([*MIX_UPS[mix_up].own, *kept])]
 
 
