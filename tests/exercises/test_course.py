@@ -21,7 +21,7 @@ from percept_obs.exercises.models import notebooks
 from percept_obs.site.exam import exam
 
 START = "00_start.ipynb"
-ALIKE = {"05 which-velocity-task", "08 which-step-task", "17 error-task"}
+ALIKE = {"05 which-velocity-task", "08 which-step-task"}
 """Tasks with too few versions: where an expression is zero, which a factor does not change, and the name of a slip."""
 
 
