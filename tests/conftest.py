@@ -44,7 +44,7 @@ def pytest_itemcollected(item):
 
 
 APART = ("tests/notebooks/test_notebooks.py::test_it_runs_with_what_it_asks_for",)
-"""How the names of tests begin that take long and share nothing: each goes to whichever process is free."""
+"""Beginnings of the names of tests that take long and share nothing: each goes to whichever process is free."""
 
 
 @pytest.hookimpl(optionalhook=True)

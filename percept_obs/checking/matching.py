@@ -41,7 +41,7 @@ ZERO = "this is to be 0, and not to differ from it: write = 0"
 NEGATED = "all entries of your matrix have the other sign"
 TRANSPOSED = "your matrix is the transpose of the one asked for"
 SAID = {INEQUALITY: (STRICT, WEAK), ZEROS: (NOT_ZERO, ZERO)}
-"""What is wrong with a weak sign where a strict one is asked for, and the other way round."""
+"""Sentences for a weak sign where a strict one is asked for, and for a strict one in place of a weak one."""
 
 
 @dataclass(frozen=True, eq=False)

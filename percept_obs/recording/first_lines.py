@@ -1,4 +1,4 @@
-"""What a file is, by its first lines and not by its name."""
+"""Kinds of files of poses, told by their first lines and not by their names."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ KINDS = MappingProxyType(
         "binary": "no text: of COLMAP's *.bin and of recordings read the folder with percept_obs.read_folder",
     }
 )
-"""What files are, by kind, and what to do with each."""
+"""Sentences that say of a file what it is, and how to read it, by its kind."""
 
 
 def kind_of(path: str | os.PathLike[str]) -> str:

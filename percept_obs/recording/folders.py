@@ -21,7 +21,7 @@ from percept_obs.validation import checked
 
 @dataclass(frozen=True, eq=False)
 class Folder:
-    """What a folder of a recording has; None for what it has not.
+    """Contents of a recording's folder that could be read; None for each part that is not there.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def read_folder(path: PathLike, rate: float | None = None, repeated: Repeated = 
 
 
 Found = tuple[list[str], dict[str, Any]] | None
-"""What is said, and the fields of `Folder`."""
+"""Parts of the sentence, and the fields of `Folder`; None where the folder is of another kind."""
 
 
 def _colmap(place: Path, rate: float | None, repeated: Repeated) -> Found:

@@ -57,7 +57,7 @@ def _along(way: Any) -> Any:
 
 
 def prepared(scene: Mapping[str, Any], lab: ObserverLab) -> dict[str, Any]:
-    """What the page plays of a scene: settings before and after the answer, and those of its hand."""
+    """Return the settings of a scene for the page: at first, after the answer, and at each stop of its hand."""
     first = scene["settings"]
     settings = settings_of(lab, first)
     after = settings_of(lab, {**first, **scene["after"]})
@@ -86,7 +86,7 @@ def _stops(hand: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _changed(before: Mapping[str, Any], after: Mapping[str, Any]) -> Settings:
-    """What differs, and in groups the parts that do."""
+    """Return the settings that differ from those before; of a group only the entries that differ."""
     return {
         name: _changed(before[name], value) if isinstance(value, dict) and isinstance(before[name], dict) else value
         for name, value in after.items()

@@ -80,8 +80,7 @@ ALONE = (
         "allows, so that you see whether an observer or the pictures are to blame.",
     ),
 )
-"""What no other package shows: a title, a page, and words."""
-
+"""Three things that no other package shows: a title, a page, and words for each."""
 
 PLAYER = FRONT / "article.js"
 """Script that plays the scenes in the lab."""
@@ -96,7 +95,7 @@ def tree() -> str:
 
 
 def front(notebooks: Mapping[str, Mapping[str, Any]]) -> tuple[dict[str, Any], ObserverLab]:
-    """What the template of the first page is filled with, and the lab that it needs.
+    """Return the values that fill the template of the first page, and the lab that plays the article.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ def step(text, slip):
 
 
 def shown(text, slip, name):
-    """What a check says on the lines of a derivation with a slip."""
+    """Return the sentences of a check on the lines of a derivation with a slip."""
     return str(check(written(text, slip).strip(), target(name)).hint(1))
 
 

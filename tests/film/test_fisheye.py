@@ -7,14 +7,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from percept_obs import PixelCamera
+from percept_obs.film import Board
+from percept_obs.film.lens import find_poses
+from percept_obs.film.pictures import undistorted
+from percept_obs.film.reading import straightened
+from percept_obs.film.sighting import Sighting
 
 cv2 = pytest.importorskip("cv2")
-
-from percept_obs.film import Board  # noqa: E402
-from percept_obs.film.lens import find_poses  # noqa: E402
-from percept_obs.film.pictures import undistorted  # noqa: E402
-from percept_obs.film.reading import straightened  # noqa: E402
-from percept_obs.film.sighting import Sighting  # noqa: E402
 
 LENS = PixelCamera((300, 300), (400, 300), (800, 600), (-0.01, 0.05, -0.05, 0.01), "equidistant")
 

@@ -1,4 +1,4 @@
-"""What the article says is so by the package's own kernels, and its page asks, runs and answers, without a request."""
+"""The article is right by the package's own kernels, and its page asks, runs and answers without a request."""
 
 import re
 import shutil

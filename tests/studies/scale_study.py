@@ -26,7 +26,7 @@ LENGTH = 9
 
 
 def filmed(kind, seed):
-    """What the telephone records."""
+    """Return the recording of the telephone."""
     return record(scenarios.held_phone(seed=seed, **KINDS[kind]), LENGTH, Camera(1 / 30, Gaussian(1e-3)), seed=seed)
 
 

@@ -103,7 +103,7 @@ CAPTIONS = {
     "map_of_the_bound": "Yellow is where distance is had best, far from the focus of expansion (notebook 12).",
     "three_surfaces": "A plane, a lens and a sphere with equal pixels: which tells more? (notebook 10)",
 }
-"""What to look for in each picture of the gallery."""
+"""Captions of the pictures of the gallery: where to look."""
 
 PLAYS = LABS["observer_lab"][1].replace(" and three questions stand", " stands")
 PLAYS += " The picture plays these 4 s again and again."

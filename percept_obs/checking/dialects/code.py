@@ -1,4 +1,4 @@
-r"""What no rule can rewrite: commands of one's own in TeX, and rows of numbers without commas in MATLAB."""
+r"""Rewrite what no single pattern can: commands that a TeX source defines, and MATLAB's rows without commas."""
 
 import re
 
