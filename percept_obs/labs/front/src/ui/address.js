@@ -39,7 +39,8 @@ export class Address {
       }
       const { settings, view } = this.read(mine);
       for (const each of lab.wanted(settings)) await this.refuse(each);
-      if (lab.closed || window.location.hash !== hash) return;
+      // Meanwhile another lab may have written its own part of the address.
+      if (lab.closed || partsOf(window.location.hash).get(name) !== mine) return;
       lab.visit(settings, view);
       if (parts.keys().next().value === name) lab.view.root.scrollIntoView({ block: "nearest" });
     } catch (error) {

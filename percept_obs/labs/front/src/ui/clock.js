@@ -33,8 +33,9 @@ export class Clock {
     this.lab = lab;
     this.stopped = stopped;
     this.still = window.matchMedia("(prefers-reduced-motion: reduce)");
-    this.press = button("", () => this.toggle(), { class: "play", "data-control": "play" });
-    this.sign = svg("path");
+    const named = { class: "play", "data-control": "play", "aria-label": "Play" };
+    this.press = button("", () => this.toggle(), named);
+    this.sign = svg("path", { d: PLAY });
     this.press.append(svg("svg", { viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true" }, this.sign));
     this.press.addEventListener("keydown", (event) => this.key(event));
   }
