@@ -180,9 +180,9 @@ class Review:
         boxes: dict[sp.Symbol, str] = {}
         for path, term in wrong_terms(self.explanations[k], mine) if self.hints > 1 and k in self.explanations else ():
             box, minus = sp.Dummy(), term.could_extract_minus_sign()
-            boxes[box] = rf"\boxed{{{sp.latex(-term if minus else term)}}}"
+            boxes[box] = rf"\boxed{{{_latex(-term if minus else term)}}}"
             mine = put(mine, path, -box if minus else box)
-        return str(sp.latex(mine, symbol_names=boxes)) if boxes else _latex(mine)
+        return str(sp.latex(mine, symbol_names=boxes | _strange(mine))) if boxes else _latex(mine)
 
 
 @lru_cache(maxsize=64)
@@ -205,7 +205,13 @@ def _explanations(target: Target, lines: tuple[Judged, ...], seconds: float) -> 
 
 @lru_cache(maxsize=64)
 def _latex(e: sp.Basic) -> str:
-    return str(sp.latex(e))
+    return str(sp.latex(e, symbol_names=_strange(e)))
+
+
+def _strange(e: sp.Basic) -> dict[sp.Symbol, str]:
+    """Names of symbols that are no names, such as "<b>$", without the letters that would be markup."""
+    symbols = [each for each in e.free_symbols if re.search(r"[^\w\s'^{}\\,.+-]", each.name)]
+    return {each: rf"\text{{{re.sub(r'[^a-zA-Z0-9 ]', '?', each.name)}}}" for each in symbols}
 
 
 def _left(name: str) -> str:

@@ -119,10 +119,9 @@ class Film(Footage):
 
     @cached_property
     def observer(self) -> Observer:
-        """Extended Kalman filter of depth with the noise of this film."""
+        """Extended Kalman filter of depth, which takes the noise of each track."""
         form = PerspectiveSystem(self.motion, self.recordings[0].imaging_surface).measure("y1", "y2")
-        variance = float(np.median([each.effective_variance for each in self if each.effective_variance is not None]))
-        return ekf(form, noise_variance=variance, hidden_variance=(1 / self.depth) ** 2)
+        return ekf(form, hidden_variance=(1 / self.depth) ** 2)
 
     @cached_property
     def depth(self) -> float:

@@ -140,8 +140,17 @@ class Observer:
         if unknown:
             raise ValueError(f"the {self.name} observer has no gain {', '.join(unknown)}; it has {', '.join(known)}")
         return replace(
-            self, gains=tuple(replace(g, value=values[g.name]) if g.name in values else g for g in self.gains)
+            self,
+            gains=tuple(replace(g, value=values[g.name], given=True) if g.name in values else g for g in self.gains),
         )
+
+    def suited_to(self, variance: float | None) -> Observer:
+        """Filter with a recording's variance of noise, unless a `noise_variance` was given; others as they are."""
+        asks = [g.name == "noise_variance" and not g.given for g in self.gains]
+        if not (variance and self.equations.update and any(asks)):
+            return self
+        pairs = zip(self.gains, asks, strict=True)
+        return replace(self, gains=tuple(replace(g, value=variance) if asked else g for g, asked in pairs))
 
     @property
     def gain_values(self) -> dict[sp.Symbol, float]:

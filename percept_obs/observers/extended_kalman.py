@@ -70,9 +70,9 @@ def extended_kalman(form: PartitionedSystem) -> Derived:
 
     Notes
     -----
-    Jazwinski, Stochastic Processes and Filtering Theory (1970), section 8.3.  R is by default that of uniform noise of
-    +-0.01; Q2 suits constants that may wander.  White noise of the variance s^2 in velocities that are known every T
-    seconds has the density s^2 T.
+    Jazwinski, Stochastic Processes and Filtering Theory (1970), section 8.3.  If R is not given, a run takes the
+    recording's variance; where that is not known either, R is that of uniform noise of +-0.01.  Q2 suits constants that
+    may wander.  White noise of the variance s^2 in velocities that are known every T seconds has the density s^2 T.
 
     Examples
     --------

@@ -34,6 +34,8 @@ class Gain:
         Condition on the value.
     reason : str
         Reason for the condition.
+    given : bool
+        True if a user chose the value, so that no recording replaces it.
 
     Raises
     ------
@@ -62,6 +64,7 @@ class Gain:
     meaning: str
     condition: Any = sp.true
     reason: str = ""
+    given: bool = False
 
     def __post_init__(self) -> None:
         if not str(self.name).isidentifier() or keyword.iskeyword(self.name) or self.name.startswith("_"):

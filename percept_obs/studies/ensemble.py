@@ -152,7 +152,7 @@ def ensemble(
     plan = Plan(
         grid,
         scenario,
-        observer,
+        observer.suited_to(camera.noise.variance),
         duration,
         camera,
         named_start(start, observer.form.coordinates),

@@ -164,7 +164,7 @@ class Plan:
 
     def _batch(self, columns: Columns, camera: Camera) -> Array:
         """Statistics of runs whose samples have the same times, shape (L, number of statistics)."""
-        observer, loop, time = self.observer, self.loop, camera.times(self.duration)
+        loop, time = self.loop, camera.times(self.duration)
         surface = self.scenario.surface
         runs, elapsed = len(columns["seed"]), time - time[0]
         if loop.moving:
@@ -179,7 +179,7 @@ class Plan:
         arriving[index] = np.arange(len(time))
         known, motion = self._known(columns, grid)
         known = known / self.scenario.unit ** np.array([*self.believed.lengths, *(0 for _ in surface.parameters)])
-        gains = np.stack([_column(columns, gain.name, gain.value) for gain in observer.gains], axis=-1)
+        gains = self._gains(columns)
         places = list(loop.statistics.measured)
         start, corrects = self._start(columns, begins[:, places] + noise[film, 0], gains, known[motion, 0])
         batch = Batch(
@@ -234,6 +234,16 @@ class Plan:
             scene = tuple((name, float(columns[name][k])) for name in self.scenes)
             in_front[k] = np.isfinite(_coordinates(self.scenario, scene, time.tobytes())).all()
         return np.asarray(in_front)
+
+    def _gains(self, columns: Columns) -> Array:
+        """Numbers of the gains, shape (L, q); a filter that was not told the noise knows that of each run."""
+        sizes, which = _distinct(columns, ["noise"] if "noise" in columns else [])
+        cameras = [camera_with(self.camera, dict(zip(["noise"], size, strict=False))) for size in sizes.tolist()]
+        suited = [self.observer.suited_to(camera.noise.variance) for camera in cameras]
+        found = np.array([[gain.value for gain in each.gains] for each in suited])[which]
+        for k, gain in enumerate(self.observer.gains):
+            found[:, k] = columns.get(gain.name, found[:, k])
+        return found
 
     def _noise(self, columns: Columns, camera: Camera, samples: int) -> tuple[Array, Indices]:
         """Noise of measured outputs, NaN where a sample is lost, shape (R, K, m), and the index of each run's."""

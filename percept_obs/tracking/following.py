@@ -171,7 +171,7 @@ def _follow_one_point(
     observer: Observer, grid: TimeGrid, start: Start | Belief, believed: Motion | None, language: Language | None
 ) -> Run:
     form, recording = observer.form, grid.recording
-    believed = believed or recording.motion
+    observer, believed = observer.suited_to(recording.effective_variance), believed or recording.motion
     _require_fit(grid, observer, believed)
     if start is None and isinstance(form.view, StateView) and form.view.guess and observer.equations.update:
         return _once_observable(observer, grid, believed, language)

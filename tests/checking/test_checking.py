@@ -1,5 +1,6 @@
 """A formula in any form is accepted, a slip is refused, found and named, and the step in which it happened."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -136,6 +137,13 @@ def test_a_right_line_shows_itself_as_mathematics():
     shown = check(RATE, AFFINE)._repr_markdown_()
     assert shown.startswith("**Right: y1'.**")
     assert r"\dot{y_{1}} = " in shown
+
+
+def test_a_strange_name_is_no_markup():
+    strange, plain = sp.symbols("<b>*a*$|`[x](y), y_3")
+    shown = check(strange + plain, strange + 2 * plain).hint(2)._repr_markdown_()
+    assert "y_{3}" in shown
+    assert not re.search(r"[<`|]|\*a", shown)
 
 
 def test_letters_are_matched_by_name():

@@ -160,6 +160,16 @@ def test_a_lab_works_under_the_policy_that_readme_states(browser, make):
     page.close()
 
 
+def test_a_saved_lab_that_may_run_no_script_says_so(browser, tmp_path):
+    observer_lab(duration=1.0).save(tmp_path / "lab.html")
+    page = browser.new_page(offline=True)
+    text, policy = (tmp_path / "lab.html").read_text("utf-8"), {"Content-Security-Policy": "script-src 'self'"}
+    page.route("http://lab.test/", lambda route: route.fulfill(body=text, content_type="text/html", headers=policy))
+    page.goto("http://lab.test/")
+    assert "content security policy forbids scripts" in page.inner_text("[data-percept-obs]")
+    page.close()
+
+
 def test_a_policy_that_forbids_blobs_is_named_in_the_lab(browser):
     page = opened(browser, observer_lab(), stated_policy().replace(" blob:", ""))
     page.wait_for_function("() => window.refused.length")

@@ -77,6 +77,14 @@ def test_a_run_is_that_of_track(make):
             assert_alike(found.sel({gain.name: value, "start_y3": start, "seed": 3}), run, 0.5, 1e-10)
 
 
+def test_a_filter_that_was_not_told_the_noise_takes_that_of_each_run():
+    sizes, make = [0.003, 0.02], (ekf(BOTH), ekf(BOTH, noise_variance=1e-4))
+    for observer in make:
+        found = ensemble(EQ35, observer, {"noise": sizes}, duration=2, camera=Camera(noise=Gaussian(0.01)))
+        runs = [track(record(EQ35, 2, Camera(noise=Gaussian(size)), seed=0), observer) for size in sizes]
+        np.testing.assert_allclose(found.final[0], [expected(run, 0)["final"] for run in runs], rtol=1e-9)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("observer", [ibo(ONE), ekf(ONE), ismo(BOTH)], ids=lambda observer: observer.name)
 def test_machine_code_says_the_same(xr, observer):

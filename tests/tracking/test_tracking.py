@@ -25,6 +25,8 @@ from percept_obs import (
     smo,
     track,
 )
+from percept_obs.observers import equivariant_filter
+from percept_obs.observers.extended_kalman import R
 
 RECORDING = record(scenarios.ma2005_eq35(), 5)
 
@@ -125,6 +127,15 @@ def test_the_filter_does_not_use_a_lost_sample():
     np.testing.assert_array_equal(run.estimate[:10], full.estimate[:10])
     assert run.covariance[-1, 0, 0] > 2 * full.covariance[-1, 0, 0]
     assert not np.allclose(run.estimate[-1], full.estimate[-1], atol=1e-12)
+
+
+def test_a_filter_takes_the_noise_of_the_recording_unless_it_was_told_one():
+    noisy = record(scenarios.ma2005_eq35(), 1, NOISY)
+    for make in (ekf, equivariant_filter):
+        assumed = [track(seen, make(BOTH)).observer.gain_values[R] for seen in (noisy, RECORDING)]
+        assert assumed == [noisy.noise_variance, make(BOTH).gain_values[R]]
+        told = make(BOTH, noise_variance=make(BOTH).gain_values[R])
+        assert track(noisy, told).observer == told
 
 
 def test_first_order_hold_is_better_and_exact_is_best():

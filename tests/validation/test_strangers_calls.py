@@ -9,7 +9,7 @@ from refusals import refuses
 from percept_obs import affine, cli, ensemble, ibo, instantaneous, record, scenarios, track
 from percept_obs.exercises import individual, reach, students_copy
 from percept_obs.exercises.copies import stub
-from percept_obs.labs import observer_lab
+from percept_obs.labs import derivation_desk, observer_lab
 from percept_obs.papers import find
 from percept_obs.studies.servoing import starts
 from percept_obs.validation import needed
@@ -24,6 +24,7 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: individual({}, "Ada"), "this is no notebook"),
     (lambda: students_copy(None), "this is no notebook"),
     (lambda: stub({}), "expected text"),
+    (lambda: derivation_desk(typed={"zz": "a"}), "the part, the step and the line"),
     (lambda: affine([[0, 0, 0]] * 3), "an affine motion"),
 )
 

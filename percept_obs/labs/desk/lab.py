@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from os import PathLike
 from typing import Any
 
@@ -65,6 +66,9 @@ class DerivationDesk(Lab):
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
         settings["outputs"].sort()
+        for key in settings["typed"]:
+            if not re.fullmatch(rf"({'|'.join(PARTS)}) [1-9]\d? \S+", key):
+                raise ValueError(f'typed has {key!r}; give the part, the step and the line, such as "rate 6 y1\'"')
         surface = settings["surface"]
         choices = self._given.output_choices if self._given else part("desk_lab")["surfaces"][surface]
         if settings["outputs"] not in [list(names) for names in choices]:

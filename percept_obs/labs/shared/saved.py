@@ -75,10 +75,17 @@ def page_of(state: Mapping[str, Any], title: str) -> str:
     )
 
 
+OPENING = (
+    "The lab opens here. If it does not, scripts are off, or this page's content security policy forbids scripts in "
+    "it, or modules from blob: addresses."
+)
+"""Words in a lab's place until it is there."""
+
+
 def place_of(state: Mapping[str, Any]) -> str:
     """HTML of a lab's place in a page, with its data."""
     data = {name: state[name] for name in SHOWN if name in state} | {"texts": _name_of(state["texts"])}
-    return f'<div data-percept-obs><script type="application/json">{inside(data)}</script></div>'
+    return f'<div data-percept-obs><script type="application/json">{inside(data)}</script><p>{OPENING}</p></div>'
 
 
 def inside(data: Mapping[str, Any]) -> str:
