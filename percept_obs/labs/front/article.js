@@ -40,10 +40,7 @@
   const questionOf = ({ name, before, after, kept, right, note }) => ({
     ...{ name, chip: "", ask: "", answers: ["", "", ""], right, tells: "", holds: () => true },
     ...{ before: () => before, after: () => after, kept, on: note?.on, note: note?.text },
-    spot: ({ shown: { time } }) => {
-      const own = Math.floor((note.part ?? 0) * (time.length - 1));
-      return note.part ? { time: time[own], own } : {};
-    },
+    spot: () => ({}),
   });
 
   /** Let a lab have the questions of the scenes, and none of its own. */
@@ -54,6 +51,7 @@
     const { screen } = lab;
     screen.clock.pause();
     screen.bare = Boolean(scene.bare);
+    screen.room = scene.play === false ? scene.after.X0 : null;
     lab.visit(settings, { ...lab.state.view, charts: scene.charts ?? [] });
     screen.turned();
     screen.moved = true;

@@ -217,7 +217,7 @@ export class TimeChart extends View {
       const y = Math.round(this.y(value)) + 0.5;
       this.line([[PAD.left, y], [right, y]], theme.grid, { width: 1 });
       const last = k === ticks.length - 1 && unit;
-      const text = log ? tickLabel(value, true) : mark ? mark(tick) : `${readable(tick)}${last ? ` ${unit}` : ""}`;
+      const text = mark && !log ? mark(tick) : `${tickLabel(value, log)}${last ? ` ${unit}` : ""}`;
       this.write(text, PAD.left - 6, y, theme.muted, "right");
     });
     const { low: first, high: last } = this.span;

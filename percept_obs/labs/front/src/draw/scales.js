@@ -75,6 +75,6 @@ export function spread(values, { lowPart = 0.01, highPart = 0.99, above = -Infin
 export function tickLabel(value, log) {
   if (!log) return readable(value, 4);
   const power = Math.round(Math.log10(value));
-  const raised = String(power).replace(/[-\d]/g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)]));
-  return power === 0 ? "1" : power === 1 ? "10" : `10${raised}`;
+  if (Math.abs(power) <= 3) return readable(10 ** power, 4);
+  return `10${String(power).replace(/[-\d]/g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)]))}`;
 }

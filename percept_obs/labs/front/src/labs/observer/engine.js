@@ -138,7 +138,7 @@ function focusOf(settings, functions, model) {
  * Where the translation of a motion's numbers points in the image; null where that is at infinity, or nothing
  * translates.
  */
-function inImage(functions, numbers) {
+export function inImage(functions, numbers) {
   const foe = Array.from(functions.foe(numbers, [0, 0]));
   return foe.every((v) => Math.abs(v) < INFINITY) ? foe : null;
 }

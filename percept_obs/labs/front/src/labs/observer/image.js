@@ -34,14 +34,14 @@ export function drawImage(screen, scene, motion, note) {
   if (foe && radius && !screen.questions.asking) {
     view.hatched((pen) => hatchAround(pen, on(foe), radius * scale, single, width, height));
   }
-  if (seen.simulated) drawStandingThings(screen, view, scene, seen, on);
+  if (seen.simulated) drawStandingThings(view, scene, seen, on);
   view.line(pathOf(scene).map(on), theme.ink, { width: 1, alpha: seen.simulated ? 0.15 : 0.35 });
   const [px, py] = on(seen.y);
   if (single === 0) view.line([[px, 0], [px, height]], theme.ink, { width: 1, dash: [2, 5] });
   if (single === 1) view.line([[0, py], [width, py]], theme.ink, { width: 1, dash: [2, 5] });
   if (isOut(seen)) drawOut(view, [px, py], theme);
   else if (scene.why || !seen.film) drawArrows(view, scene, seen, [px, py]);
-  if (foe) {
+  if (foe && !screen.bare) {
     const [fx, fy] = on(foe);
     view.dot(fx, fy, 9, theme.raised, 0);
     view.ring(fx, fy, 10, theme.warning, 2.5);
@@ -132,9 +132,7 @@ function drawDirections(view, { single, up }, theme) {
 }
 
 /** Standing things, each with its way of the last second; of one size, which says nothing of their distance. */
-function drawStandingThings(screen, view, scene, { motion, image }, on) {
-  const { theme, now } = scene;
-  const toCamera = screen.standing.toCamera(scene.shown.settings, now);
+function drawStandingThings(view, { theme }, { motion, image, toCamera }, on) {
   for (const thing of STANDING_THINGS) {
     const place = apply(toCamera, thing);
     if (place[2] < 0.6) continue;

@@ -5,10 +5,17 @@ import { knownAt } from "../../engine/tables.js";
 import { shapeOf } from "./camera.js";
 
 /** The motion's A and b at a time that is shown. */
-export function coefficientsAt(lab, { settings, time }, functions, at) {
+export function coefficientsAt(lab, shown, functions, at) {
+  const [row] = motionAt(lab, shown, functions, [valueBetween(shown.time, 1, 0, at)]).rows;
+  return { A: [0, 3, 6].map((k) => row.slice(k, k + 3)), b: row.slice(9, 12) };
+}
+
+/** The motion's numbers at some times, as a table. */
+export function motionAt(lab, { settings }, functions, times) {
   const { motion } = lab.results.engines[0].camera.motion(settings, functions);
-  const { rows } = knownAt(motion, [], [valueBetween(time, 1, 0, at)]);
-  return { A: [0, 3, 6].map((row) => Array.from(rows.subarray(row, row + 3))), b: Array.from(rows.subarray(9, 12)) };
+  const { rows, width, varying } = knownAt(motion, [], times);
+  const rowAt = (k) => Array.from(rows.subarray(width * k, width * k + width));
+  return { times, rows: Array.from(times, (_, k) => rowAt(varying ? k : 0)) };
 }
 
 /** Where a point of image coordinates and inverse distance is, in metres. */

@@ -7,10 +7,10 @@ import { between, valueBetween, within } from "../../engine/between.js";
 import { affine, imageVelocities } from "../../engine/velocities.js";
 import { button, setText } from "../../draw/dom.js";
 import { motionOf, readTrack, shapeOf, varies } from "./camera.js";
-import { translationTowards } from "./engine.js";
+import { inImage, translationTowards } from "./engine.js";
 import { QUESTIONS } from "./questions.js";
-import { apply, flow, isRigid, Standing, wayOf } from "./standing.js";
-import { coefficientsAt, placesOf } from "./place.js";
+import { apply, back, flow, isRigid, Standing, wayOf } from "./standing.js";
+import { coefficientsAt, motionAt, placesOf } from "./place.js";
 import { drawImage, MOST } from "./image.js";
 import { chartOf, controlsOf, radiusOf, sentence } from "./told.js";
 import { drawWorld } from "./world.js";
@@ -31,6 +31,8 @@ export class ObserverScreen extends Screen {
   static parts = { drawImage, drawWorld, chartOf, sentence };
   /** True where a page shows the truth alone. */
   bare = false;
+  /** A place that the map holds besides the run, for the next settings have their point there. */
+  room = /** @type {number[] | null} */ (null);
   /** True once a distance was hardly seen from above. */
   steep = false;
   /** What is seen at the time that was drawn last, in metres before the camera. */
@@ -180,12 +182,13 @@ export class ObserverScreen extends Screen {
   // What is seen at a time.
 
   /** From what the camera sees at a time to a world that stands, if there is one. */
-  worldOf(settings) {
+  worldOf(shown, functions) {
     const { lab, standing } = this;
+    const { settings, time } = shown;
     const recorded = lab.model.recordings[settings.scenario];
     if (recorded) return derived(recorded, "way", () => wayOf(motionOf(lab.model, recorded)));
-    if (!isRigid(settings.A) || varies(settings, lab.model)) return null;
-    return (time) => standing.toWorld(settings, time);
+    if (varies(settings, lab.model)) return derived(shown, "way", () => wayOf(motionAt(lab, shown, functions, time)));
+    return isRigid(settings.A) ? (when) => standing.toWorld(settings, when) : null;
   }
 
   /** Places in metres before the camera: of the point, of the estimate, and functions of the settings. */
@@ -214,7 +217,7 @@ export class ObserverScreen extends Screen {
       return { run: each, state: at, guess: guessOf(at), chosen: each === run, ring: 11 + 5 * (all.length - 1 - k) };
     });
     const expected = guess && placeOf([y[0], y[1], estimate[2]]);
-    const toWorld = this.worldOf(settings);
+    const toWorld = this.worldOf(shown, functions);
     const world = toWorld?.(now);
     const inWorld = (where) => (world ? apply(world, where) : where);
     const simulated = Boolean(world) && !recorded;
@@ -229,9 +232,10 @@ export class ObserverScreen extends Screen {
       ...{ camera: inWorld([0, 0, 0]), point: inWorld(place), truth: Boolean(state) },
       copies: state && speedsOf(place, motion),
       expects: !this.bare && expected && speedsOf(expected, settings.believed ?? motion)[1],
-      movable: simulated || (state && !varies(settings, lab.model)),
-      foe: shown.foe,
-      radius: radiusOf(shown, shown.radius * y[2]),
+      toCamera: world && back(world),
+      movable: (simulated || state) && !varies(settings, lab.model),
+      foe: simulated ? inImage(functions, [...motion.A.flat(), ...motion.b, ...shape]) : shown.foe,
+      radius: radiusOf({ ...shown, settings: { ...settings, b: motion.b } }, shown.radius * y[2]),
       size: shown.radius * y[2],
       single: shown.measured.length === 1 ? shown.measured[0] : null,
     };

@@ -42,7 +42,7 @@ function after(first, second) {
 }
 
 /** The way back of a map that turns and moves. */
-function back(map) {
+export function back(map) {
   const turned = SAME.map((_, k) => (k % 4 < 3 ? map[4 * (k % 4) + Math.floor(k / 4)] : 0));
   const moved = apply(turned, [map[3], map[7], map[11]]);
   return turned.map((value, k) => (k % 4 < 3 ? value : -moved[Math.floor(k / 4)]));
@@ -75,10 +75,6 @@ export class Standing {
     const way = ways.get(time) ?? (isRigid(motion.A) ? after(this.pose, flow(motion, this.at - time)) : SAME);
     ways.set(time, way);
     return way;
-  }
-
-  toCamera(motion, time) {
-    return back(this.toWorld(motion, time));
   }
 }
 

@@ -40,7 +40,7 @@ export function chartOf(screen, scene) {
   const value = told ? distances(shown, chosen.estimate)[between(time, since).sample] : 0;
   const text = `within ${percent(shown.tolerance, 6)} from ${since.toFixed(1)} s`;
   return {
-    scale: { low: 0, high: 1.2 * Math.max(most, ...found.map((values) => greatest(values, 1.5 * most))) },
+    scale: { low: 0, high: 1.2 * Math.max(most, ...found.map((values) => greatest(values, 2.1 * most))) },
     unit: "m",
     lines: [
       ...lines,

@@ -38,7 +38,7 @@ export function drawWorld(screen, scene, motion, note) {
   if (seen.simulated) {
     for (const thing of STANDING_THINGS) view.speck(on(thing), 2.5, theme.muted);
   }
-  const { b } = seen.motion;
+  const b = screen.bare ? [0, 0, 0] : seen.motion.b;
   const goal = along(b.map((value) => (seen.toWorld ? -value : value)));
   view.line([camera, goal], theme.warning, { dash: [6, 5] });
   view.avoidLine(camera, goal);
@@ -68,7 +68,9 @@ export function drawWorld(screen, scene, motion, note) {
     const placeOf = placesOf(screen.lab, ghost);
     const where = between(ghost.time, now);
     const kept = [0, 1, 2].map((c) => valueBetween(ghost.runs[0].estimate, 3, c, where));
-    if (kept[2] > 1e-4) view.ring(...on(seen.inWorld(placeOf(kept))), 6, theme.kept, 1.5);
+    const at = kept[2] > 1e-4 ? on(seen.inWorld(placeOf(kept))) : null;
+    if (at) view.ring(...at, 6, theme.kept, 1.5);
+    if (at) view.tag({ id: "kept", text: scene.kept, at, colour: theme.kept, rank: 2, gap: 8 });
   }
   if (seen.truth) view.dot(point[0], point[1], 7, theme.ink);
   if (!why) for (const bead of seen.beads) drawBead(view, seen, bead, on, theme);
@@ -135,8 +137,9 @@ function worldGoal(screen, scene, { toWorld, inWorld, place }) {
     take(there([0, 0, 0]));
     take(there(placeOf(stateOf(rows))));
     const first = stateOf(chosen.estimate);
-    if ((k === 0 || k === GOAL) && first[2] > 0 && 1 / first[2] < 1.6 / stateOf(rows)[2]) take(there(placeOf(first)));
+    if ((k === 0 || k === GOAL) && first[2] > 0 && 1 / first[2] < 2.1 / stateOf(rows)[2]) take(there(placeOf(first)));
   }
+  if (screen.room) take(screen.room);
   if (why) take(inWorld(place.map((value) => 2 * value)));
   if (settings.believed && toWorld) {
     const began = apply(flow(settings.believed, scene.end - time[0]), [0, 0, 0]);
