@@ -75,10 +75,10 @@ FIGURES = {make.__name__: make for make in (observers_at_their_limit, map_of_the
 LABS = {
     "observer_lab": (
         observer_lab,
-        "The lab of one point. On the left what the camera sees: the point, how it moves and how its estimate "
-        "expects it to, and the focus of expansion in a hatched circle. On the right the world from above, with the "
-        "point and its estimate on one ray. Below, the two distances over 4 s, which agree within 10 % from 2.3 s "
-        "on. One sentence and three questions stand above.",
+        "The lab of one point. On the left what the camera sees: the point, how it moves, how its estimate expects it "
+        "to move, and the focus of expansion in a hatched circle. On the right the world from above, with the point "
+        "and its estimate on one ray. Below, the two distances over 4 s, which agree within 10 % from 2.3 s on. One "
+        "sentence and three questions stand above.",
     ),
     "structure_lab": (
         structure_lab,
