@@ -56,11 +56,11 @@ def drawn(seed):
 def judged(seed):
     """True relative error at the end, and whether the estimate is trusted without the truth."""
     recording, observer, guess = drawn(seed)
-    noise = recording.noise_variance if seed % 2 else None
+    recording = replace(recording, noise_variance=recording.noise_variance if seed % 2 else None)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         run = track(recording, observer, guess)
-        blind = track(replace(recording, truth=None, noise_variance=noise, signal=None), observer, guess)
+        blind = track(replace(recording, truth=None, signal=None), observer, guess)
     return float(run.relative_error[-1]) if run.diverged_at is None else np.nan, blind.trust().trusted
 
 
