@@ -19,7 +19,7 @@ def test_settings_stay_valid_under_hostile_messages(name, seed, tmp_path, monkey
     lab = LABS[name]()
     kept = {trait: getattr(lab, trait) for trait in ("kind", "texts", "model")}
     taken = refused = 0
-    for message in messages(lab, sampled(400, 1000) if seed else 60, seed, with_summary=0.02 if seed else 0):
+    for message in messages(lab, sampled(400, 1000) if seed else 80, seed, with_summary=0.02 if seed else 0):
         try:
             lab.set_state(message)
         except traitlets.TraitError as error:

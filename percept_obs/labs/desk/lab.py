@@ -67,7 +67,7 @@ class DerivationDesk(Lab):
         """Raise a ValueError for settings that do not go together."""
         settings["outputs"].sort()
         for key in settings["typed"]:
-            if not re.fullmatch(rf"({'|'.join(PARTS)}) [1-9]\d? \S+", key):
+            if not re.fullmatch(rf"({'|'.join(PARTS)}) [1-9]\d? \S.*", key):
                 raise ValueError(f'typed has {key!r}; give the part, the step and the line, such as "rate 6 y1\'"')
         surface = settings["surface"]
         choices = self._given.output_choices if self._given else part("desk_lab")["surfaces"][surface]
