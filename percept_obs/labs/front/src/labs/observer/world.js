@@ -170,7 +170,7 @@ function drawTicks(view, { place, inWorld }, on, camera, end, reach, theme, why)
   const length = Math.hypot(...place);
   const far = Math.hypot(end[0] - camera[0], end[1] - camera[1]);
   const [nx, ny] = [-(end[1] - camera[1]) / far, (end[0] - camera[0]) / far];
-  const step = [0.1, 1, 5, 10, 50, 100, 1000].find((metre) => (metre * far) / reach >= 6) ?? 1e4;
+  const step = [0.1, 1, 5, 10, 50, 100, 1000].find((metre) => (metre * far) / reach >= 9) ?? 1e4;
   for (let k = 1; k < 60; k++) {
     const [u, v] = on(inWorld(place.map((value) => (value * k * step) / length)));
     if (u < 0 || v < 0 || u > view.width || v > view.height) continue;
