@@ -94,6 +94,9 @@ def derive(
     if len(asked) == 1 and isinstance(mine, str) and "=" not in mine:  # the right-hand side alone
         mine = f"{asked[0]} = {mine}"
     goal = _with_factors(target_of(target), letters) if letters else target_of(target)
+    names = [line.name for line in goal.lines]
+    if unknown := [name for name in asked if name not in names]:
+        raise ValueError(f"there is no line {', '.join(unknown)}; the target has {', '.join(filter(None, names))}")
     try:
         review = check(mine, goal)
     except REFUSALS as error:  # CannotRead is one of them; the place in the text stands below a blank line
@@ -111,6 +114,10 @@ def _with_factors(target: Target, factors: Mapping[str, float]) -> Target:
     """Return a target with a number before some letters, and before all entries of those that are matrices."""
     used = set().union(*(line.formula.free_symbols for line in target.lines))
     known = {s: factors[name] * s for s in used for name in (s.name, re.sub(r"_\d+$", "", s.name)) if name in factors}
+    names = {re.sub(r"_\d+$", "", symbol.name) for symbol in used} | {symbol.name for symbol in used}
+    if strange := sorted(name for name, factor in factors.items() if name not in names or not factor):
+        raise ValueError(f"no letter can have the factor of {', '.join(strange)}; there are {', '.join(sorted(names))}")
+
     lines = tuple(replace(line, formula=line.formula.xreplace(known)) for line in target.lines)
     return replace(target, lines=lines, derivation=None, elsewhere=None, others={})
 

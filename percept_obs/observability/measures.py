@@ -143,7 +143,10 @@ class Observability:
 
     def __getitem__(self, name: str) -> Measure:
         """Result of one measure by its name."""
-        return {measure.name: measure for measure in self.measures}[name]
+        found = {measure.name: measure for measure in self.measures}
+        if name not in found:
+            raise KeyError(f"there is no measure {name!r}; there are {', '.join(found)}")
+        return found[name]
 
     def _measures(self) -> Iterator[Measure]:
         elapsed, window = self.recording.elapsed, f"{self.window:g} s"

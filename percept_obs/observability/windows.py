@@ -14,8 +14,9 @@ from percept_obs.observability.directions import in_words
 from percept_obs.recording import Recording
 from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.signal import from_the_start, slack_of
+from percept_obs.tracking.following import require_match
 from percept_obs.tracking.grid import known_signals
-from percept_obs.validation import checked
+from percept_obs.validation import checked, one_of
 
 UNSEEN = 1e-6
 """A direction whose eigenvalue is below this share of the largest one is not seen."""
@@ -64,6 +65,7 @@ class Windows:
     def unseen(self, window: int | None = None) -> Array:
         """Directions that a window does not show, orthonormal columns, shape (n, q); the weakest if none is given."""
         k = self.weakest if window is None else window
+        one_of(len(self.matrices), window=k)
         values, vectors = np.linalg.eigh(self.matrices[k])
         return np.asarray(vectors[:, values <= UNSEEN * self._positive_scale[k]])
 
@@ -136,6 +138,7 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
 
 def instants(form: PartitionedSystem, recording: Recording) -> Excitation:
     """The matrix w w^T at the samples, as windows of length 0; see `windowed`."""
+    require_match(form, recording, recording.motion)
     canonical = form.canonical_form()
     sizes = [sp.Add(*map(sp.Abs, sp.Add.make_args(entry))) for entry in canonical.w]  # no two terms cancel
     scale = (_along(canonical, recording, sizes) ** 2).sum(axis=1)

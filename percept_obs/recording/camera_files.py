@@ -155,8 +155,9 @@ def _camera(path: PathLike, camera: str | None) -> tuple[str, dict[str, Any]]:
     cameras = {str(name): each for name, each in whole.items() if isinstance(each, dict) and "intrinsics" in each}
     if camera is not None or len(cameras) > 1:
         if camera not in cameras:
-            known = ", ".join(cameras) or "none by name"
-            raise ValueError(f"{file} has the cameras {known}; give one of these names, not {camera!r}")
+            known = ", ".join(cameras)
+            advice = f"the cameras {known}; give one of these names" if cameras else "one camera; leave camera= out"
+            raise ValueError(f"{file} has {advice}, not {camera!r}")
         whole = cameras[camera]
     elif cameras:
         (whole,) = cameras.values()

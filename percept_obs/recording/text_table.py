@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from csv import reader
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
@@ -204,6 +204,9 @@ def read_table(
             layout["names"] = header
         if repeated := {name for name in header if header.count(name) > 1}:
             raise ValueError(f"two columns of one name, {', '.join(sorted(repeated))}, among {', '.join(header)}")
+        if header and separator == ",":
+            with open(file, encoding="utf-8-sig") as lines:
+                _refuse_short_rows(lines, skipped, len(header))
         if numbers and (clean := _clean(file, skipped + 1, set(header) & set(numbers), layout)):
             return TextTable(file, clean)
         with open(file, encoding="utf-8-sig") as lines:
@@ -223,6 +226,14 @@ def read_table(
         raise ValueError(f"{file} has {error}; expected rows such as {example}") from None
     columns = zip(names or header, (rows[name] for name in rows.columns), strict=False)
     return TextTable(file, {name: pd.Categorical(column.fillna("").str.strip()) for name, column in columns})
+
+
+def _refuse_short_rows(lines: Iterable[str], skipped: int, width: int) -> None:
+    """Raise ValueError for a row with fewer cells than the header has names."""
+    for number, line in enumerate(lines):
+        cells = line.count(",") + 1
+        if number > skipped and cells < width and line.strip() and not _is_comment(line):
+            raise ValueError(f"{cells} cells in line {number + 1}, and {width} names in its header")
 
 
 def _clean(file: str, skipped: int, numbers: set[str], layout: dict[str, Any]) -> dict[str, Any] | None:

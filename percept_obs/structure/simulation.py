@@ -19,7 +19,7 @@ from percept_obs.structure.pixels import SignalToNoise, homography
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
-from percept_obs.validation import Chain, checked, numbers, set_fields
+from percept_obs.validation import Chain, checked, limit, numbers, set_fields
 
 NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
@@ -177,6 +177,7 @@ def grid_patch(side: float, count: int = 3) -> Array:
     """
     if not (np.isfinite(side) and side > 0) or count < 3 or count % 2 == 0:
         raise ValueError(f"a patch needs an odd count from 3 on and a positive side, not {count} points and {side} m")
+    limit(float(count) ** 2, "points", "take fewer along a side", 10_000)
     ticks = np.linspace(-side / 2, side / 2, count)
     grid = np.array([(x, y, 0.0) for x in -ticks for y in ticks])
     return grid[np.argsort(np.abs(grid).sum(axis=1), kind="stable")]
@@ -228,6 +229,8 @@ class StructureScenario(Scenario):
             raise ValueError(f"d_s is {self.scale}; it is one over a distance in metres, finite and positive")
         if self.choice.parameters:
             set_fields(self, choice=replace(self.choice, scale=self.scale))
+        if not pinhole().fits(self.surface):
+            raise ValueError(f"structure and motion are seen with a pinhole, not on the {self.surface.name} surface")
         self.choice.known_motion(self.motion)
 
     @property

@@ -12,7 +12,7 @@ from percept_obs.compile import Array
 from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import diverged
-from percept_obs.validation import checked
+from percept_obs.validation import checked, positive
 
 __all__ = ["Consistency", "check_consistency"]
 
@@ -113,6 +113,7 @@ class Consistency:
         """Interval of the mean of `count` NIS, with the probability 0.95."""
         from scipy.stats import chi2
 
+        positive(count=count)
         low, high = chi2.interval(CONFIDENCE, count * self.outputs)
         return float(low) / count, float(high) / count
 

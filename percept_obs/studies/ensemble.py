@@ -141,6 +141,9 @@ def ensemble(
         raise ValueError(f"the seeds are {seeds!r}; give whole numbers from 0 on, or how many of them")
     if len(np.unique(several)) < len(several):
         raise ValueError("a seed stands twice; the same seed gives the same run again, so give each once")
+    starts = named_start(start, observer.form.coordinates)
+    if clash := sorted(name for name in starts if f"start_{name}" in (over or {})):
+        raise ValueError(f"over varies start_{clash[0]}, and start gives {clash[0]} as well; give one of the two")
     positive(step=step)
     steps = duration / min(step, camera.period)
     limit(steps, "steps", "take longer steps or a shorter time")
@@ -155,7 +158,7 @@ def ensemble(
         observer.suited_to(camera.noise.variance),
         duration,
         camera,
-        named_start(start, observer.form.coordinates),
+        starts,
         motion,
         step,
         tolerance,

@@ -21,7 +21,7 @@ from percept_obs.recording import Recording
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
-from percept_obs.validation import bar, checked, positive, travels
+from percept_obs.validation import bar, checked, limit, one_of, positive, travels
 
 SYSTEM = PerspectiveSystem(rigid(), pinhole())
 STEERING = steering(SYSTEM)
@@ -106,6 +106,7 @@ class Servoing:
 
     def arrived_at(self, tolerance: float = 0.02) -> Array:
         """Seconds from which on |y - y*| stays below the tolerance, shape (S,); infinite if it does not."""
+        positive(tolerance=tolerance)
         away = (np.linalg.norm(self.image_error, axis=-1) >= tolerance) | self.lost
         since = np.where(away.any(axis=1), away.shape[1] - np.argmax(away[:, ::-1], axis=1), 0)
         return np.append(self.time, np.inf)[since]
@@ -125,6 +126,7 @@ class Servoing:
 
     def camera(self, start: int = 0) -> Array:
         """Places of the camera in the axes that it has at the goal, in metres, shape (K, 3)."""
+        one_of(len(self.coordinates), start=start)
         y1, y2, inverse = np.moveaxis(self.coordinates[start], -1, 0)
         points = np.stack([y1, y2, np.ones_like(y1)], axis=-1) / inverse[..., None]
         right, down = (points[:, k] - points[:, 0] for k in (2, 1))  # two sides of the square
@@ -134,6 +136,8 @@ class Servoing:
 
     def recording(self, point: int = 0, start: int = 0) -> Recording:
         """Samples of one point, with its true motion in samples, for `track` and labs."""
+        one_of(len(self.coordinates), start=start)
+        one_of(self.coordinates.shape[2], point=point)
         ends = np.stack([self.time[:-1], self.time[1:] - 1e-6], axis=-1).ravel()  # each velocity is held
         held = np.repeat(self.velocity[start, :-1], 2, axis=0)
         motion = rigid(
@@ -271,6 +275,9 @@ def servo(
         raise ValueError(f"the depth {depth!r} is none of 'true', 'constant' and an Observer, such as ekf(FORM)")
     if observed and (observed.form.x1, observed.form.parameters) != (FORM.x1, FORM.parameters):
         raise ValueError(f"the {observed.name} observer is of another form; make it of servoing.FORM")
+    limit(duration / PERIOD, "steps", "take a shorter duration", 1e6)
+    if not 0 <= noise < math.inf or seed < 0:
+        raise ValueError(f"the noise is {noise} and the seed {seed}; give a deviation and a whole number from 0 on")
     generator, surface, steps = np.random.default_rng(seed), SYSTEM.surface, round(duration / PERIOD) + 1
     goal = surface.project(GOAL)
     points = _points(poses)

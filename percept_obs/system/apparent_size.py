@@ -47,8 +47,10 @@ class Sized(ImagingSurface):
         """Power of length of each coordinate: s has none, for a radius is a length as well."""
         return (*(0 for _ in self.image), 1, *(0 for _ in self.parameters))
 
-    def fits(self, other: ImagingSurface) -> bool:
+    def fits(self, other: object) -> bool:
         """Return True if another surface has the same formulas, whatever the radius is."""
+        if not isinstance(other, ImagingSurface):
+            return False
         shape = [{p: each.values[p] for p in self.parameters if p in each.values} for each in (self, other)]
         return super().fits(other) or (self.image == other.image and self.ray == other.ray and shape[0] == shape[1])
 

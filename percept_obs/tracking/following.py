@@ -346,7 +346,8 @@ def require_match(form: PartitionedSystem, recording: Recording, motion: Motion)
     if form.view is None or not form.view.fits(view):
         raise DoesNotFit(
             f"the system was made for {f'the {form.view.name} surface' if form.view else 'no view'} "
-            f"{dict(form.values)}, but the recording was seen on the {view.name} {dict(view.values)}; use the same view"
+            f"{dict(form.values)}, but the recording was seen as {view.name} {dict(getattr(view, 'values', {}))}; "
+            "use the same view"
         )
     missing = [name for name in form.measured if name not in recording.names]
     if missing:

@@ -437,6 +437,8 @@ class Run:
         unknown = [name for name in names if name not in known]
         if unknown:
             raise ValueError(f"there is no coordinate {', '.join(unknown)}; there are {', '.join(known)}")
+        if len(set(names)) < len(names):
+            raise ValueError(f"a coordinate stands twice in {', '.join(names)}; name each once")
         return [known.index(name) for name in names or self.observer.form.hidden]
 
     def __repr__(self) -> str:

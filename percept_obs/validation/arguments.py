@@ -206,6 +206,13 @@ def set_fields(frozen: Any, **values: Any) -> None:
         object.__setattr__(frozen, name, value)
 
 
+def one_of(count: int, **places: int) -> None:
+    """Refuse places among so many things that are none of them, each by its name."""
+    for name, place in places.items():
+        if place != int(place) or not -count <= place < count:
+            raise ValueError(f"{name} is {place}; there are {count}, from 0 to {count - 1}")
+
+
 def positive(**values: float) -> None:
     """Refuse numbers that are not positive and finite, each by its name."""
     for name, value in values.items():

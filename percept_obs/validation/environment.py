@@ -56,6 +56,8 @@ def bar(things: Iterable[Any] | None = None, label: str = "", total: float | Non
 
 def write_whole(target: Path, content: bytes) -> None:
     """Write a file under another name and rename it, so that half a file is never found."""
+    if not target.parent.is_dir():
+        raise FileNotFoundError(f"the folder of '{target}' is not there; name a file in one that is")
     other = target.with_name(f".{target.name}.{os.getpid()}")
     try:
         other.write_bytes(content)

@@ -1,18 +1,38 @@
 """Calls that strangers made and that were accepted, or refused in words that help nobody."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from examples import BOTH
 from refusals import refuses
 
-from percept_obs import affine, cli, ensemble, ibo, instantaneous, record, scenarios, track
-from percept_obs.exercises import individual, reach, students_copy
+from percept_obs import (
+    PerspectiveSystem,
+    Recording,
+    affine,
+    cli,
+    ekf,
+    ensemble,
+    ibo,
+    instantaneous,
+    pinhole,
+    read_tum,
+    record,
+    rigid,
+    scenarios,
+    track,
+    windowed,
+)
+from percept_obs.exercises import derive, individual, reach, students_copy
 from percept_obs.exercises.copies import stub
 from percept_obs.labs import derivation_desk, observer_lab
 from percept_obs.papers import find
-from percept_obs.studies.servoing import starts
+from percept_obs.structure import grid_patch
+from percept_obs.studies.servoing import servo, starts
 from percept_obs.validation import needed
+
+SYSTEM, SEEN = PerspectiveSystem(affine(), pinhole()), record(scenarios.ma2005_eq35(), 1)
 
 test_they_are_refused_with_what_to_do = refuses(
     lambda call: call(),
@@ -24,6 +44,17 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: individual({}, "Ada"), "this is no notebook"),
     (lambda: students_copy(None), "this is no notebook"),
     (lambda: stub({}), "expected text"),
+    (lambda: derive("y1' = b1", SYSTEM, "y9'"), "there is no line y9'"),
+    (lambda: derive("y1' = b1", SYSTEM, "y1'", letters={"q": 2}), "no letter can have the factor of q"),
+    (lambda: track(SEEN, ekf(BOTH)).nees("y3", "y3"), "stands twice"),
+    (lambda: track(record(scenarios.held_phone(), 0.2), ibo(BOTH)), "was seen as camera with an IMU"),
+    (lambda: windowed(BOTH, replace(SEEN, motion=rigid(camera_velocity=(0, 0, 1))), 1), "the same kind of motion"),
+    (lambda: windowed(BOTH, SEEN, 0.5).lost(10**6), "there are"),
+    (lambda: ensemble(scenarios.ma2005_eq35(), ibo(BOTH), {"start_y3": [0.1]}, start={"y3": 0.5}), "one of the two"),
+    (lambda: servo(starts(1), "true", seed=-1), "a whole number from 0 on"),
+    (lambda: servo(starts(1), "true", duration=1e7), "take a shorter duration"),
+    (lambda: servo(starts(1), "true", duration=0.1).recording(9), "there are 4, from 0 to 3"),
+    (lambda: grid_patch(0.2, 10001), "take fewer along a side"),
     (lambda: derivation_desk(typed={"zz": "a"}), "the part, the step and the line"),
     (lambda: affine([[0, 0, 0]] * 3), "an affine motion"),
 )
@@ -34,6 +65,33 @@ def test_settings_that_are_changed_in_place_say_how_to_set_them():
     with pytest.raises(TypeError, match=r"lab\.settings = "):
         lab.settings.update(duration=-5)
     assert {**lab.settings, "duration": 5.0}["duration"] == 5.0
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n".encode("utf-16"), "save it as UTF-8"),
+        (b"0,5 0,1 0,2 0 0 0 0 1\n", "decimal commas"),
+        (b"0.5,0.1,0.2,0,0,0,0,1\n", "TUM's have blanks"),
+        (b"1 " * 2000 + b"\n", "over a hundred numbers"),
+        (b"2 0 0 0 0 1 0 0 0 0 1 0\n", "no rotation"),
+    ],
+)
+def test_what_a_file_is_stands_in_its_refusal(text, said, tmp_path):
+    (tmp_path / "poses.txt").write_bytes(text)
+    with pytest.raises(ValueError, match=said):
+        read_tum(tmp_path / "poses.txt")
+
+
+def test_a_row_with_too_few_cells_is_no_lost_sample(tmp_path):
+    (tmp_path / "track.csv").write_text("time,y1,y2\n0,1,2\n1,2\n")
+    with pytest.raises(ValueError, match="2 cells in line 3, and 3 names"):
+        Recording.from_csv(tmp_path / "track.csv", SEEN.motion)
+
+
+def test_a_setting_is_no_attribute_of_a_lab():
+    with pytest.raises(AttributeError, match="duration is a setting"):
+        observer_lab().duration = 5
 
 
 def test_a_film_that_is_not_there_is_named(capsys):

@@ -155,6 +155,11 @@ class Lab(anywidget.AnyWidget):
         )
         _close_those_of_an_earlier_run(self)
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in type(self).schema and not self.has_trait(name):
+            raise AttributeError(f"{name} is a setting: write lab.settings = lab.settings | {{{name!r}: ...}}")
+        super().__setattr__(name, value)
+
     def __init_subclass__(cls) -> None:
         """Let the docstring list the settings."""
         super().__init_subclass__()

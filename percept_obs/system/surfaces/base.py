@@ -114,8 +114,10 @@ class ImagingSurface(OnePoint):
     def __hash__(self) -> int:
         return hash((self.image, self.distance, self.ray))
 
-    def fits(self, other: ImagingSurface) -> bool:
+    def fits(self, other: object) -> bool:
         """Return True if another surface has the same formulas, and the same numbers if this one has numbers."""
+        if not isinstance(other, ImagingSurface):
+            return False
         same = (self.image, self.distance, self.ray) == (other.image, other.distance, other.ray)
         return same and (not self.values or self.values == other.values)
 
