@@ -671,7 +671,7 @@ def test_pyplots_axes_are_shown_once(runs):
 @pytest.mark.slow
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
 def test_saved_pictures_keep_their_text(runs, tmp_path, ending):
-    figure = figures.excitation(windowed(form("y1"), runs("chained").recording, 5))
+    figure = figures.excitation(windowed(form("y1"), runs("(35), both outputs").recording, 5))
     path = tmp_path / f"figure.{ending}"
     figure.save(path)
     assert path.stat().st_size > 1000
