@@ -70,7 +70,7 @@ def kind_of(path: str | os.PathLike[str]) -> str:
     if count == 12 and "," not in line:
         return "twelve"
     if "," in line:
-        poses = "seconds" if numbers[0] < FIRST and "." in cells[0] else "EuRoC"
+        poses = "seconds" if (numbers[0] or 0) < FIRST and "." in cells[0] else "EuRoC"
         return "IMU" if count == 7 else poses if count >= 8 else ""
     return "TUM" if count >= 8 else "times" if count == 1 else ""
 

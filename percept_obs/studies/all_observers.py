@@ -149,7 +149,9 @@ def all_observers(
     if max_tracks is not None and max_tracks < 2:
         raise ValueError(f"max_tracks is {max_tracks}; two are needed, one to choose gains on and one to report on")
     if len({id(each) for each in (*choosing, *recordings)}) < len(choosing) + len(recordings):
-        raise ValueError("a recording is given twice, or in both halves: its errors would be too small if gains were chosen on it")
+        raise ValueError(
+            "a recording is given twice, or in both halves: its errors would be too small if gains were chosen on it"
+        )
     tried = dict[Family | FunctionObserver, Sequence[Gains]]({make: make.candidates for make in OBSERVERS})
     tried = tried if candidates is None else dict(candidates)
     if not tried or not all(map(len, tried.values())):
