@@ -74,6 +74,11 @@ def derive(
         A review gives hints: ``derive(mine, target).hint(1)`` says which line, 2 which term, 3 which slip.  An attempt
         says why there is nothing to review: no answer, a line that is missing, or no formula of the target's letters.
 
+    Raises
+    ------
+    ValueError
+        If a line that is asked for, or a letter with a factor, is none of the target's.
+
     See Also
     --------
     percept_obs.check : Checks a formula.
@@ -117,7 +122,6 @@ def _with_factors(target: Target, factors: Mapping[str, float]) -> Target:
     names = {re.sub(r"_\d+$", "", symbol.name) for symbol in used} | {symbol.name for symbol in used}
     if strange := sorted(name for name, factor in factors.items() if name not in names or not factor):
         raise ValueError(f"no letter can have the factor of {', '.join(strange)}; there are {', '.join(sorted(names))}")
-
     lines = tuple(replace(line, formula=line.formula.xreplace(known)) for line in target.lines)
     return replace(target, lines=lines, derivation=None, elsewhere=None, others={})
 
