@@ -237,8 +237,9 @@ class Plan:
 
     def _gains(self, columns: Columns) -> Array:
         """Numbers of the gains, shape (L, q); a filter that was not told the noise knows that of each run."""
-        sizes, which = _distinct(columns, ["noise"] if "noise" in columns else [])
-        cameras = [camera_with(self.camera, dict(zip(["noise"], size, strict=False))) for size in sizes.tolist()]
+        varied = ["noise"] if "noise" in columns else []
+        rows, which = _distinct(columns, varied)
+        cameras = [camera_with(self.camera, dict(zip(varied, row, strict=True))) for row in rows.tolist()]
         suited = [self.observer.suited_to(camera.noise.variance) for camera in cameras]
         found = np.array([[gain.value for gain in each.gains] for each in suited])[which]
         for k, gain in enumerate(self.observer.gains):

@@ -209,7 +209,7 @@ def set_fields(frozen: Any, **values: Any) -> None:
 def one_of(count: int, **places: int) -> None:
     """Refuse places among so many things that are none of them, each by its name."""
     for name, place in places.items():
-        if place != int(place) or not -count <= place < count:
+        if place != int(place) or not 0 <= place < count:
             raise ValueError(f"{name} is {place}; there are {count}, from 0 to {count - 1}")
 
 

@@ -291,6 +291,17 @@ def test_of_points_a_run_ends_with_the_samples_of_its_own_motion(page):
     assert shown.inner_text(".notice") == "The samples of your motion end at 4 s."
 
 
+WRITTEN_MEANWHILE = """() => {
+    const [, , { kernels }] = window.perceptObsLabs;
+    const prepare = kernels.prepare.bind(kernels);
+    kernels.prepare = (settings) => {
+        history.replaceState(null, "", location.hash.replace("seed=7", "seed=8"));
+        return prepare(settings);
+    };
+}"""
+"""Let the part of another lab change while the third one makes ready for its own."""
+
+
 @pytest.mark.browser
 @pytest.mark.slow
 def test_two_labs_of_a_page_each_read_their_own_part(page):
@@ -304,8 +315,11 @@ def test_two_labs_of_a_page_each_read_their_own_part(page):
     assert shown.evaluate(SETTINGS, 0) == states[0]["settings"]
     assert shown.evaluate(SETTINGS, 1)["outputs"] == ["y1", "y2"]
     assert shown.evaluate("scrollY") > 100
+    shown.evaluate(WRITTEN_MEANWHILE)
+    shown.evaluate("() => (location.hash = location.hash.replace('spin=0.5', 'spin=0.6'))")
+    rested_at(shown, 2, "spin", 0.6)
     shown.evaluate("() => tests.first().change({ seed: 3 }, true)")
     shown.wait_for_function(  # what of them was unfolded, and which was first, is of no matter
         "(parts) => location.hash.slice(1).replace(/;look[^&]*/g, '').split('&').sort().join() === parts",
-        arg="observer-2=1;seed=7,observer=1;seed=3,points=1;spin=0.5",
+        arg="observer-2=1;seed=7,observer=1;seed=3,points=1;spin=0.6",
     )
