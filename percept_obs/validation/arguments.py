@@ -136,7 +136,9 @@ def _is_meant_as_float(value: Any, kind: Kind) -> bool:
 
 
 def _type_of(value: Any) -> Any:
-    """Type of a value, or of an array's entries; an array of one number stands for it."""
+    """Type of a value, or of an array's entries; an array of one number stands for it, and NaN is none of its type."""
+    if isinstance(value, float) and value != value:
+        return object
     return value.dtype if type(value) is np.ndarray and value.ndim else type(value)
 
 

@@ -113,7 +113,7 @@ Coefficients = Annotated[
 ]
 """Coefficients of a motion."""
 
-FLOAT = Kind("a real number", is_real, by_type=True)
+FLOAT = Kind("a real number", lambda v: is_real(v) and v == v, by_type=True)
 ARRAY = Kind("an array of real numbers", are_numbers, by_type=True)
 NOTHING = Kind("None", lambda v: v is None, by_type=True)
 _KINDS: Mapping[Any, Kind] = {

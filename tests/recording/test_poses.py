@@ -286,7 +286,6 @@ def test_a_camera_on_a_body_sees_from_where_it_is_mounted():
         ),
         ({}, "3 poses are too few for velocities; 5 are needed"),
         ({"sigma": (-1.0, 0.0)}, "sigma is .* none of them negative"),
-        ({"correlated": np.nan}, "correlated is nan"),
     ],
 )
 def test_what_are_no_poses_is_refused(changes, message):

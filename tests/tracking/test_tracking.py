@@ -227,7 +227,6 @@ def test_the_claimed_covariance():
         (ibo(ONE), {"believed": rigid(point_velocity=[0] * 3)}, DoesNotFit, "same kind of motion"),
         (ibo(ONE), {"hold": "second"}, ValueError, "none of 'zero', 'first' and 'exact'"),
         (ibo(ONE), {"step": 0.0}, ValueError, "must be positive"),
-        (ibo(ONE), {"step": np.nan}, ValueError, "must be positive"),
         (ibo(ONE), {"start": (0, 0)}, ValueError, "expected 3: y1, y2, y3"),
         (ibo(ONE), {"start": (0, 0, np.nan)}, ValueError, "no finite value for y3"),
         (ibo(ONE), {"start": {"z": 1}}, ValueError, "no finite value for z"),

@@ -214,6 +214,14 @@ def test_degrees_are_asked_for():
     rigid(camera_angular_velocity=[0, 0, -20])
 
 
+@pytest.mark.parametrize("nothing", [np.nan, np.float64("nan"), np.array(np.nan), sp.nan])
+def test_nan_is_no_real_number_also_after_numbers_were_seen(nothing):
+    for _ in range(2):
+        assert Camera(0.1) and Camera(np.float64(0.1))
+        with pytest.raises(WrongKind, match="expected a real number"):
+            Camera(nothing)
+
+
 def test_an_array_is_looked_at_once_by_the_type_of_its_entries():
     @checked
     def total(values: ArrayLike, pair: tuple[float, float] = (0.0, 0.0)) -> float:
