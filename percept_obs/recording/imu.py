@@ -10,7 +10,7 @@ import numpy as np
 from percept_obs.compile import Array
 from percept_obs.recording.camera import Seed, seeded
 from percept_obs.recording.text_table import NANOSECONDS, Clock, PathLike, Repeated, read_table
-from percept_obs.system.inertial import imu
+from percept_obs.system.inertial import b_a, b_w, imu
 from percept_obs.system.motion import Motion
 from percept_obs.validation import checked, positive
 
@@ -74,8 +74,8 @@ class Imu:
             return np.stack([np.interp(instants, times, column) for column in biases.T], axis=-1)
 
         known = imu(samples[:, :3], samples[:, 3:], times)
-        names = (symbol.name for symbol in known.parameters)
-        return replace(known, densities=dict(zip(names, (noise**2).tolist(), strict=True))), at
+        names = (symbol.name for symbol in (*known.parameters, *b_w, *b_a))
+        return replace(known, densities=dict(zip(names, (np.append(noise, walk) ** 2).tolist(), strict=True))), at
 
 
 @checked

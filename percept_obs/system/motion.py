@@ -52,8 +52,8 @@ class Motion:
         Values of `parameters` over time.  It pickles with functions of a module; a lambda, pickle refuses.
     errors : PoseErrors, optional
         Errors of the camera's poses that the signal was made from.
-    densities : mapping of names of parameters to floats, optional
-        Densities of white noise in the signal: variance times the time between samples.
+    densities : mapping of names of parameters, or of a view's states, to floats, optional
+        Densities of white noise in the signal, variance times the time between samples, or in a state's rate.
 
     Raises
     ------

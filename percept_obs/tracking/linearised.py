@@ -13,6 +13,7 @@ from percept_obs.compile import Array, Flags, Indices, vectorised
 from percept_obs.compile.integrator import LONGEST_STEP, step_along
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.system.state_view import StateView
 from percept_obs.validation import limit
 
 Doubt = float | Mapping[str, float]
@@ -101,12 +102,21 @@ def values_along(form: PartitionedSystem, recording: Recording, expressions: lis
 def _expressions(form: PartitionedSystem, doubts: tuple[str, ...]) -> tuple[sp.Expr, ...]:
     """The rate, its Jacobian, and how noise in the doubted coordinates' rates and parameters moves the coordinates."""
     x, rate = form.coordinates, rate_of(form)
-    known = {symbol.name: symbol for symbol in (*x, *form.parameters)}
+    view = form.view if isinstance(form.view, StateView) else None
+    states = {} if view is None else {s.name: s for s in view.state}
+    known = states | {symbol.name: symbol for symbol in (*x, *form.parameters)}
     unknown = [name for name in doubts if name not in known]
     if unknown:
         raise ValueError(f"there is no {', '.join(unknown)} to doubt; there are {', '.join(known)}")
-    # noise in a coordinate's rate acts on it alone, in a parameter on whatever rate depends on it
-    columns = [
-        sp.Matrix([int(known[name] == s) for s in x]) if known[name] in x else rate.diff(known[name]) for name in doubts
-    ]
+
+    def moved(symbol: sp.Symbol) -> sp.Matrix:
+        """How noise moves the coordinates: by a parameter, by the rate of a coordinate, or of a state of the view."""
+        if symbol in form.parameters:
+            return rate.diff(symbol)
+        if view is None or symbol in x:
+            return sp.Matrix([int(symbol == s) for s in x])
+        back = dict(zip(view.state, view.back, strict=True))
+        return sp.Matrix([view.formulas[s].diff(symbol).subs(back, simultaneous=True) for s in x])
+
+    columns = [moved(known[name]) for name in doubts]
     return (*rate, *rate.jacobian(x), *sp.Matrix.hstack(sp.zeros(len(x), 0), *columns))
