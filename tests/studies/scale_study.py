@@ -23,6 +23,7 @@ KINDS = {
 }
 DENSITIES = {"turning_noise": 1.6e-4**2, "velocity_noise": 2.8e-3**2}
 LENGTH = 9
+OBSERVER = ekf(camera_with_imu().partition("y1", "y2"), noise_variance=1e-6, **DENSITIES)
 
 
 def filmed(kind, seed):
@@ -35,7 +36,7 @@ def judged(kind, seed, given=False):
     recording = filmed(kind, seed)
     force = recording.motion.known(0.0)[0, 3:]
     start = {"y3": 0.5} | {f"q{k + 1}": -0.5 * force[k] for k in range(3)} if given else None
-    run = track(recording, ekf(camera_with_imu().partition("y1", "y2"), noise_variance=1e-6, **DENSITIES), start)
+    run = track(recording, OBSERVER, start)
     deviation = np.sqrt(run.covariance[-1, -1, -1])
     trust = replace(run, recording=replace(recording, truth=None, signal=None)).trust()
     return run, float(run.error[-1, -1] / deviation), trust

@@ -73,7 +73,8 @@ class Diagnosis:
     findings : tuple of Finding
         Mistakes that together explain the samples, the one that explains most first.
     before, left : float
-        Root mean square of what is left of the samples as they are, and without the mistakes, in focal lengths.
+        Root mean square of what is left of the samples as they are, and without the mistakes, in focal lengths; infinite
+        where they are no images but pixels.
     explained : bool
         True if what is left looks like noise.
     noise : float or None
@@ -206,7 +207,7 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
             "farther to the side than a few focal lengths"
         )
         pixels = Finding("pixels", "the samples are pixels and not divided by the focal length", evidence)
-        return Diagnosis((pixels,), math.nan, math.nan, True, noise, looked_at=len(several), given=len(given))
+        return Diagnosis((pixels,), math.inf, math.inf, True, noise, looked_at=len(several), given=len(given))
     tracks = {recording: track_of(recording) for recording in several}
     short = [recording for recording, track in tracks.items() if track.count < LIMITS.fewest]
     several = [recording for recording in several if recording not in short]
