@@ -73,8 +73,8 @@ class Diagnosis:
     findings : tuple of Finding
         Mistakes that together explain the samples, the one that explains most first.
     before, left : float
-        Root mean square of what is left of the samples as they are, and without the mistakes, in focal lengths; infinite
-        where they are no images but pixels.
+        Root mean square of what is left of the samples as they are, and without the mistakes, in focal lengths;
+        infinite for pixels that are no images.
     explained : bool
         True if what is left looks like noise.
     noise : float or None
