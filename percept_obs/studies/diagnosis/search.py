@@ -43,6 +43,8 @@ class Limits:
     rounds: int = 3  # times that each sample is then given to the point that explains it better
     fewest: int = 20  # values from which a point is estimated: ten samples of both image coordinates
     outlying: float = 6.0  # standard deviations of a wild sample; normal noise reaches them once in 500 million samples
+    around: float = 0.25  # seconds beside a wild sample in which the other tracks have more left than
+    restless: float = 1.5  # so many times the usual, if the motion is wrong there and not the sample
     few: int = 3  # wild samples that are worth naming,
     few_of_all: float = 0.003  # and their share of all samples
     most_wild: float = 0.15  # share of wild samples beyond which they are no exceptions, and none is left out
@@ -341,11 +343,21 @@ def _largest_run(gain: Array) -> Flags:
 
 
 def _outliers(best: Fit, noise: float | None) -> tuple[int, int]:
-    """Number of samples that are far off, 0 if they are few, and of all samples."""
-    far = max(LIMITS.outlying * max(best.rms, noise or 0.0), 10 * FINEST)
-    wild = total = 0
-    for track, point in zip(best.tracks, best.points, strict=True):
-        apart = np.abs(track.sampled - seen(track, point, best.mix_up, best.wrong).outputs)
-        wild += int((np.nan_to_num(apart) > far).any(axis=1).sum())
-        total += int(np.isfinite(track.sampled).any(axis=1).sum())
+    """Number of samples that are far off while the other tracks are not, 0 if they are few, and of all samples."""
+    usual = max(best.rms, noise or 0.0)
+    far, restless = max(LIMITS.outlying * usual, 10 * FINEST), LIMITS.restless * usual
+    pairs = zip(best.tracks, best.points, strict=True)
+    left = [np.abs(track.sampled - seen(track, point, best.mix_up, best.wrong).outputs) for track, point in pairs]
+    wild = 0
+    for number, (track, apart) in enumerate(zip(best.tracks, left, strict=True)):
+        for time in track.time[(np.nan_to_num(apart) > far).any(axis=1)]:
+            rest = [
+                each[np.abs(other.time - time) <= LIMITS.around].ravel()
+                for k, (other, each) in enumerate(zip(best.tracks, left, strict=True))
+                if k != number
+            ]
+            beside = np.concatenate([np.empty(0), *rest])
+            beside = beside[np.isfinite(beside)]
+            wild += not (len(beside) and np.sqrt((beside**2).mean()) > restless)
+    total = sum(int(np.isfinite(track.sampled).any(axis=1).sum()) for track in best.tracks)
     return (wild if wild >= max(LIMITS.few, LIMITS.few_of_all * total) else 0), total
