@@ -42,20 +42,19 @@ def judged(film, truth):
     poses = film.seen.poses
     off = np.linalg.norm(film.path.at(poses.time).position - truth.poses.position[truth.frame(poses.time)], axis=1)
     found = {"pose": 1e3 * np.median(off), "focal": film.camera.focal[0] / truth.camera.focal[0] - 1}
-    errors, wrong, count = {True: [], False: []}, 0, 0
+    errors, sure = {True: [], False: []}, []
     for run in film.runs:
         late = int(np.searchsorted(run.elapsed, AFTER))
         if late < len(run.time):
             errors[run.recording.truth is not None].append(error(run, truth, film, late))
-        trusted = run.trust().trusted
-        count += trusted
-        wrong += trusted and error(run, truth, film, -1) > 0.1
+        if run.trust().trusted:
+            sure.append(error(run, truth, film, -1))
     for name, board in (("corners", True), ("others", False)):
         found |= {name: np.nanmedian(errors[board]), f"{name} 90 %": np.nanquantile(errors[board], 0.9)}
     return found | {
         "tracks": len(film),
-        "trusted": count,
-        "trusted and wrong": wrong,
+        "trusted": len(sure),
+        **{f"over {share:.0%}": int((np.array(sure) > share).sum()) for share in (0.1, 0.2)},
         "findings": ", ".join(each.key for each in film.findings),
     }
 
