@@ -127,12 +127,15 @@ def _needed(best: Fit, keys: Sequence[str], names: Sequence[str]) -> dict[str, t
     """Mistakes of the best fit, as `Found` has them: the mix-up, then the numbers, those that explain most first."""
     found: dict[str, tuple[Fit, tuple[str, ...]]] = {}
     if best.mix_up != "nothing":
-        found[MIX_UPS[best.mix_up].key] = (_without(best, best.wrong, "nothing"), _other_mix_ups(best, names))
+        found[MIX_UPS[best.mix_up].key] = (
+            _without(best, best.wrong, "nothing"),
+            (*_other_mix_ups(best, names), *_other_lens(best)),
+        )
     alone = {key: _without(best, _rest(best, key)) for key in _reported(best)}
     others = [key for key in keys if key not in best.wrong]
     for key, without in sorted(alone.items(), key=lambda each: -each[1].squares):
         as_good = [other for other in others if best.gain(_without(best, [*_rest(best, key), other])) < LIMITS.clearly]
-        found[key] = without, tuple(as_good)
+        found[key] = without, (*as_good, *(_other_lens(best) if key == BEND else ()))
     return found
 
 
@@ -219,8 +222,8 @@ def _best(screened: Sequence[Fit], keys: Sequence[str], noise: float | None) -> 
     less = [each for each in others if each.typical < first.typical]
     told = [] if _explained(first, noise) else [each for each in less if _explained(each, noise)]
     other = _fewest(_joint(_likeliest(told), keys)) if told else None
-    if other and not other.wrong and not any(each.wrong for each in told):
-        return other  # a mix-up without any number explains all
+    if other and not (other.wrong or MIX_UPS[other.mix_up].fisheye or any(each.wrong for each in told)):
+        return other  # a mix-up without any number explains all; a narrow fisheye bends images as other lenses do
     best = _joint(first, keys)
     explained = _explained(best, noise)
     if other and (other.gain(_fewest(best)) > LIMITS.clearly or not (other.wrong or explained)):
@@ -297,6 +300,16 @@ def _other_mix_ups(best: Fit, names: Sequence[str]) -> tuple[str, ...]:
     others = [name for name in names if name not in ("nothing", best.mix_up)]
     as_good = [MIX_UPS[name] for name in others if best.gain(_without(best, best.wrong, name)) < LIMITS.clearly]
     return tuple(dict.fromkeys(each.sentence if each.key == own else each.key for each in as_good))
+
+
+def _other_lens(best: Fit) -> tuple[str, ...]:
+    """Key of the other kind of lens, a fisheye for one that bends images or the reverse, if it explains as well."""
+    bends = BEND in best.wrong
+    if best.mix_up != ("nothing" if bends else "fisheye"):
+        return ()
+    mix_up, keys = ("fisheye", _rest(best, BEND)) if bends else ("nothing", [*best.wrong, BEND])
+    other = fit(best.tracks, mix_up, keys, best.wrong)
+    return (MIX_UPS["fisheye"].key if bends else BEND,) if best.gain(other) < LIMITS.clearly else ()
 
 
 def _switched(found: Fit, noise: float | None) -> Switch | None:
