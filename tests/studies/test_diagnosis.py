@@ -108,9 +108,11 @@ MOUNT = np.array([0.05, -0.1, 0.02]), Rotation.from_euler("zxy", [1.5, 0.1, -0.0
 BACK = -MOUNT[1].T @ MOUNT[0], MOUNT[1].T
 
 
-def carried_past(poses, changed, camera=CAMERA):
+AHEAD = np.array([[0.5, 0.2, 5.0], [-0.8, 0.1, 4.0], [0.2, -0.6, 6.0]])
+
+
+def carried_past(poses, changed, camera=CAMERA, places=AHEAD):
     """Recordings of points that carried poses see, as somebody brings them with other poses and pixels."""
-    places = np.array([[0.5, 0.2, 5.0], [-0.8, 0.1, 4.0], [0.2, -0.6, 6.0]])
     seen = np.stack([poses.rotation.inv().apply(place - poses.position) for place in places])
     draw, (given, change) = np.random.default_rng(0), changed
     for track in CAMERA.pixels(seen[..., :2] / seen[..., 2:]) + draw.normal(0, 0.3, (3, len(poses.time), 2)):
@@ -163,6 +165,30 @@ def test_mix_ups_of_files_and_calibration_are_named(wanted, poses, pixels, camer
     exact = on_a_path()
     found = diagnosed([*carried_past(exact, (poses(exact), pixels), camera)])
     assert (found.named, found.explained) == (wanted, True), found.sentence
+
+
+LENSES = {
+    "EuRoC, cam0": (-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05),
+    "KITTI, image_00": (-0.3691481, 0.1968681, 0.001353473, 0.0005677587, -0.06770705),
+    "TUM RGB-D, fr2": (0.2312, -0.7849, -0.0033, -0.0001, 0.9172),
+}
+"""Lenses of public recordings, as they are published with them."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lens", [*LENSES.values(), "fisheye"])
+def test_a_lens_that_bends_is_told_from_a_fisheye(lens):
+    bends = lens != "fisheye"
+    other = (
+        PixelCamera(CAMERA.focal, CAMERA.centre, distortion=lens)
+        if bends
+        else PixelCamera(CAMERA.focal, CAMERA.centre, distortion=(0, 0, 0, 0), lens="equidistant")
+    )
+    exact, places = on_a_path(), AHEAD * [3.0, 3.0, 1.0]
+    seen = carried_past(exact, (exact, lambda pixels: other.pixels(CAMERA.directions(pixels))), places=places)
+    found = diagnosed([*seen])
+    assert found.named == ("distortion ignored" if bends else "fisheye ignored"), found.sentence
+    assert found.explained == (lens != LENSES["TUM RGB-D, fr2"])  # which bends outwards and back
 
 
 @pytest.mark.night

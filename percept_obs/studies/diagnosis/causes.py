@@ -71,7 +71,7 @@ CAUSES = MappingProxyType(
                 OFFSET, "the images are {size:.3f} s {end} against the motion", 0.005, LARGEST_OFFSET, 0.05, "s"
             ),
             WrongNumber(FOCAL, f"the focal length is {{ratio:.3f}} times {DIVIDED}", 0.01, 1.0, 0.1, "1"),
-            WrongNumber(BEND, "the lens bends the images, by the factor 1 {first:+.3f} |y|^2", 0.02, 0.6, 0.1, "1"),
+            WrongNumber(BEND, "the lens bends the images, by the factor 1 {first:+.3f} |y|^2 ...", 0.02, 0.6, 0.1, "1"),
             WrongNumber(BIAS, f"{TURNING} ({{listed}}) rad/s", 0.003, 0.3, 0.02, "rad/s", 3),
             WrongNumber(DRIFT, "the translation grows too long by {percent:.2g} % a second", 0.003, 0.3, 0.03, "1/s"),
             WrongNumber(SHUTTER, f"{ROWS}, {{milli:.3g}} ms a focal length", 0.003, 0.1, 0.02, "s"),

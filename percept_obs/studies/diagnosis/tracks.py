@@ -154,11 +154,12 @@ def seen(track: Track, point: Array, mix_up: str, wrong: Mapping[str, Array], as
         y, slope = _through_fisheye(y)
         by_position = slope @ by_position
     square = (y**2).sum(axis=1)[:, None]
-    bent = y * (1 + bend * square)
-    lens = (1 + bend * square)[:, :, None] * np.eye(m) + 2 * bend * y[:, :, None] * y[:, None, :]
+    factor, slope = 1 + bend * square + (bend * square) ** 2, bend + 2 * bend**2 * square  # as lenses of cameras do
+    bent = y * factor
+    lens = factor[:, :, None] * np.eye(m) + 2 * slope[:, :, None] * y[:, :, None] * y[:, None, :]
     by_position = ratio * lens @ by_position
     by_body = by_position @ turn
-    found = {FOCAL: ratio * bent[:, :, None], BEND: (ratio * y * square)[:, :, None]}
+    found = {FOCAL: ratio * bent[:, :, None], BEND: (ratio * y * (square + 2 * bend * square**2))[:, :, None]}
     found[CENTRE] = np.broadcast_to(np.eye(m), (count, m, m))
     if MOUNT in asked:
         turned = np.einsum("aij,nj->nia", -SPINS, maps @ point) @ _turn_by_vector(-number[MOUNT][:3])
