@@ -161,8 +161,7 @@ class StructureAndMotion(OnePoint):
 
         Those of unknown quantities are not used and may be anything; velocities that are said to be zero must be.
         """
-        if motion.parameters != rigid().parameters:
-            raise ValueError(f"the {motion.name} motion is none of rigid() with numbers for all of its parameters")
+        self._refuse_other(motion)
         if motion.signal is None:
             raise ValueError(
                 "the motion has no numbers; build it with those that are known, rigid(camera_velocity=...)"
@@ -171,6 +170,11 @@ class StructureAndMotion(OnePoint):
         absent = [motion.parameters.index(symbol) for symbol in self._zeros]
         signal = motion.signal.mapped(partial(self._select, known, absent))
         return Motion("rigid, partly known,", motion.A, motion.b, self._known, signal)
+
+    @staticmethod
+    def _refuse_other(motion: Motion) -> None:
+        if motion.parameters != rigid().parameters:
+            raise ValueError(f"the {motion.name} motion is none of rigid() with numbers for all of its parameters")
 
     def _select(self, known: list[int], absent: list[int], rows: Array) -> Array:
         if rows[..., absent].any():
@@ -237,9 +241,12 @@ class StructureAndMotion(OnePoint):
 
     def theta_values(self, scale: ArrayLike, motion: Motion, times: ArrayLike) -> Array:
         """True theta of a rigid motion at some times, shape (K, n), for a true scale d_s in 1/m."""
-        times = np.atleast_1d(numbers(times, "the times"))
-        if np.ndim(scale) and np.shape(scale) != times.shape:
-            raise ValueError(f"the scale has the shape {np.shape(scale)}; give one number, or one for each time")
+        self._refuse_other(motion)
+        times, scale = np.atleast_1d(numbers(times, "the times")), numbers(scale, "the scale")
+        if scale.ndim and scale.shape != times.shape:
+            raise ValueError(f"the scale has the shape {scale.shape}; give one number, or one for each time")
+        if not (np.isfinite(scale) & (scale > 0)).all():
+            raise ValueError(f"the scale d_s is {scale}; it is one over a distance in metres, finite and positive")
         columns = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters))).T
         return np.stack(vectorised((d_s, *motion.parameters), self.theta)(scale, *columns), axis=-1)
 
@@ -340,13 +347,13 @@ class StructureAndMotion(OnePoint):
 
     def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse depth d_s ybar3 in 1/m, shape (...), from ybar and theta; NaN where theta is missing or d_s <= 0."""
-        ybar, theta = np.split(np.asarray(coordinates, dtype=float), [len(OUTPUTS)], axis=-1)
+        ybar, theta = np.split(self._all(coordinates), [len(OUTPUTS)], axis=-1)
         inverse: Array = self.quantities(theta).get(d_s.name, self.scale) * ybar[..., 2]
         return np.where(np.isnan(theta).any(axis=-1), np.nan, inverse)
 
     def locate(self, coordinates: ArrayLike) -> Array:
         """Points in metres, shape (..., 3), from ybar and theta; infinite where no positive inverse depth follows."""
-        image = np.asarray(coordinates, dtype=float)[..., :2]
+        image = self._all(coordinates)[..., :2]
         return pinhole().locate(np.concatenate([image, self.inverse(coordinates)[..., None]], axis=-1))
 
 

@@ -96,6 +96,8 @@ class GivenDepth:
 
     def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """See `DepthSource`."""
+        if exact.shape != time.shape:
+            raise ValueError(f"the exact depths have shape {exact.shape}, the times {time.shape}; expected the same")
         return exact + self.bias + self.drift * time + self.noise.draw(generator, exact.shape)
 
 
@@ -115,7 +117,7 @@ class PatchDepth:
     Raises
     ------
     ValueError
-        If the offsets are not finite.
+        If the offsets are not finite, or of fewer than four points.
 
     See Also
     --------
@@ -138,6 +140,8 @@ class PatchDepth:
         offsets = numbers(self.offsets, "the offsets", "n", 3)
         if not np.isfinite(offsets).all():
             raise ValueError("the offsets are not finite; give n points of a patch in metres, as from grid_patch()")
+        if (different := len(np.unique(offsets, axis=0))) < 4:
+            raise ValueError(f"the offsets are of {different} points; a patch needs four, such as from grid_patch()")
 
     def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """See `DepthSource`."""
@@ -279,7 +283,7 @@ class ScaledDepthCamera(Camera):
     Raises
     ------
     ValueError
-        If a number is out of its range, as of `Camera`.
+        If a number is out of its range, as of `Camera`, or the noise is given twice.
 
     See Also
     --------
@@ -300,6 +304,13 @@ class ScaledDepthCamera(Camera):
     pixels: PixelCamera = IMAGE_PLANE
     ratio: SignalToNoise | None = None
     depth: DepthSource = EXACT_DEPTH
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.ratio and self.noise != NO_NOISE:
+            raise ValueError(f"the noise is {self.noise} and the ratio {self.ratio}; give one of the two")
+        if self.field_of_view != 2 * math.pi:
+            raise ValueError("a ScaledDepthCamera has no field_of_view; give the image a size, pixels=PixelCamera(...)")
 
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
         """Samples as of `Camera`; noise is drawn for the pixels, then for the depth, then for the lost pictures.
@@ -332,6 +343,13 @@ def _object_points(scenario: Scenario, offsets: Array, time: Array) -> Array:
     return tracked[:, None] + offsets @ np.stack(turned, axis=1)
 
 
+def _refuse_other(recording: Recording) -> StructureAndMotion:
+    """Return the choice of a recording of (y1, y2, ybar3); ValueError for another recording."""
+    if not isinstance(recording.view, StructureAndMotion) or recording.names != NAMES:
+        raise ValueError(f"this needs the outputs {', '.join(NAMES)}, but the recording has {', '.join(recording.names)}")
+    return recording.view
+
+
 @checked
 def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, scale: float | None = None) -> Recording:
     """Return the recording of the same samples, times and noise with another choice of unknowns.
@@ -350,7 +368,7 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
     Raises
     ------
     ValueError
-        If the scale is not positive.
+        If the recording is of something else, or the scale is not positive.
     ImpossibleChoice
         If a velocity that is said to be zero is not.
 
@@ -369,10 +387,9 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
     >>> other.view.theta
     (v_p1, v_p2, v_p3)
     """
+    _refuse_other(recording)
     truth = None
     if scale is not None:
-        if not 0 < scale < math.inf:
-            raise ValueError(f"the scale d_s is {scale}; it is one over a distance in metres, finite and positive")
         ybar = recording.outputs if recording.truth is None else recording.truth[:, : len(OUTPUTS)]
         truth = np.hstack([ybar, choice.theta_values(scale, motion, recording.time)])
     return replace(recording, view=choice, motion=choice.known_motion(motion), truth=truth)
@@ -407,9 +424,7 @@ def linear_view(recording: Recording) -> Recording:
     >>> linear_view(recording).outputs.round(2).tolist()
     [[6.4, 6.0, 20.0], [7.54, 7.2, 20.0], [8.69, 8.39, 20.0]]
     """
-    choice = recording.view
-    if not isinstance(choice, StructureAndMotion) or recording.names != NAMES:
-        raise ValueError(f"the linear view needs the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}")
+    choice = _refuse_other(recording)
     view, truth, signal = LinearView(choice), recording.truth, recording.signal
     return replace(
         recording,
