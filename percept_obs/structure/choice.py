@@ -161,7 +161,8 @@ class StructureAndMotion(OnePoint):
 
         Those of unknown quantities are not used and may be anything; velocities that are said to be zero must be.
         """
-        self._refuse_other(motion)
+        if motion.parameters != rigid().parameters:
+            raise ValueError(f"the {motion.name} motion is none of rigid() with numbers for all of its parameters")
         if motion.signal is None:
             raise ValueError(
                 "the motion has no numbers; build it with those that are known, rigid(camera_velocity=...)"
@@ -170,11 +171,6 @@ class StructureAndMotion(OnePoint):
         absent = [motion.parameters.index(symbol) for symbol in self._zeros]
         signal = motion.signal.mapped(partial(self._select, known, absent))
         return Motion("rigid, partly known,", motion.A, motion.b, self._known, signal)
-
-    @staticmethod
-    def _refuse_other(motion: Motion) -> None:
-        if motion.parameters != rigid().parameters:
-            raise ValueError(f"the {motion.name} motion is none of rigid() with numbers for all of its parameters")
 
     def _select(self, known: list[int], absent: list[int], rows: Array) -> Array:
         if rows[..., absent].any():
@@ -241,12 +237,10 @@ class StructureAndMotion(OnePoint):
 
     def theta_values(self, scale: ArrayLike, motion: Motion, times: ArrayLike) -> Array:
         """True theta of a rigid motion at some times, shape (K, n), for a true scale d_s in 1/m."""
-        self._refuse_other(motion)
+        self.known_motion(motion)  # which refuses another one
         times, scale = np.atleast_1d(numbers(times, "the times")), numbers(scale, "the scale")
-        if scale.ndim and scale.shape != times.shape:
-            raise ValueError(f"the scale has the shape {scale.shape}; give one number, or one for each time")
-        if not (np.isfinite(scale) & (scale > 0)).all():
-            raise ValueError(f"the scale d_s is {scale}; it is one over a distance in metres, finite and positive")
+        if scale.shape not in ((), times.shape) or not (np.isfinite(scale) & (scale > 0)).all():
+            raise ValueError(f"the scale d_s is {scale}; give a positive number, or one for each time")
         columns = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters))).T
         return np.stack(vectorised((d_s, *motion.parameters), self.theta)(scale, *columns), axis=-1)
 
@@ -264,9 +258,7 @@ class StructureAndMotion(OnePoint):
         ValueError
             If theta has the wrong shape, or d_s was estimated earlier and its value is not set.
         """
-        theta = np.asarray(theta, dtype=float)
-        if theta.shape[-1:] != (len(self.unknown),):
-            raise ValueError(f"theta has shape {theta.shape}; expected (..., {len(self.unknown)}): {self.theta}")
+        theta = numbers(theta, f"the values of theta = {self.theta}", len(self.unknown))
         by_name = dict(zip(self.unknown, np.moveaxis(theta, -1, 0), strict=True))
         if d_s.name not in (*self.unknown, *self.earlier):
             return by_name

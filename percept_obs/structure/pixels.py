@@ -51,7 +51,7 @@ class SignalToNoise:
 
     def __post_init__(self) -> None:
         if not abs(self.decibels) <= 3000:
-            raise ValueError(f"the ratio is {self.decibels} dB; it must be from -3000 to 3000")
+            raise ValueError(f"the ratio is {self.decibels} dB; it must be finite, from -3000 to 3000")
 
     def sigma(self, pixels: ArrayLike) -> float:
         """Standard deviation of the noise on these pixel coordinates, in pixels."""

@@ -138,10 +138,8 @@ class PatchDepth:
 
     def __post_init__(self) -> None:
         offsets = numbers(self.offsets, "the offsets", "n", 3)
-        if not np.isfinite(offsets).all():
-            raise ValueError("the offsets are not finite; give n points of a patch in metres, as from grid_patch()")
-        if (different := len(np.unique(offsets, axis=0))) < 4:
-            raise ValueError(f"the offsets are of {different} points; a patch needs four, such as from grid_patch()")
+        if not np.isfinite(offsets).all() or len(np.unique(offsets, axis=0)) < 4:
+            raise ValueError("the offsets are not finite, or of fewer than four points; take those of grid_patch()")
 
     def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """See `DepthSource`."""
@@ -307,10 +305,8 @@ class ScaledDepthCamera(Camera):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.ratio and self.noise != NO_NOISE:
-            raise ValueError(f"the noise is {self.noise} and the ratio {self.ratio}; give one of the two")
-        if self.field_of_view != 2 * math.pi:
-            raise ValueError("a ScaledDepthCamera has no field_of_view; give the image a size, pixels=PixelCamera(...)")
+        if (self.ratio and self.noise != NO_NOISE) or self.field_of_view != 2 * math.pi:
+            raise ValueError("give a noise or a ratio, and no field_of_view: the size of pixels=PixelCamera(...) is it")
 
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
         """Samples as of `Camera`; noise is drawn for the pixels, then for the depth, then for the lost pictures.
@@ -341,13 +337,6 @@ def _object_points(scenario: Scenario, offsets: Array, time: Array) -> Array:
     unit = np.asarray(scenario.position) + np.eye(3)
     turned = [replace(scenario, position=point).points(time) - tracked for point in unit.tolist()]
     return tracked[:, None] + offsets @ np.stack(turned, axis=1)
-
-
-def _refuse_other(recording: Recording) -> StructureAndMotion:
-    """Return the choice of a recording of (y1, y2, ybar3); ValueError for another recording."""
-    if not isinstance(recording.view, StructureAndMotion) or recording.names != NAMES:
-        raise ValueError(f"this needs the outputs {', '.join(NAMES)}, but the recording has {', '.join(recording.names)}")
-    return recording.view
 
 
 @checked
@@ -387,7 +376,8 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
     >>> other.view.theta
     (v_p1, v_p2, v_p3)
     """
-    _refuse_other(recording)
+    if recording.names != NAMES:
+        raise ValueError(f"another choice needs the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}")
     truth = None
     if scale is not None:
         ybar = recording.outputs if recording.truth is None else recording.truth[:, : len(OUTPUTS)]
@@ -424,7 +414,9 @@ def linear_view(recording: Recording) -> Recording:
     >>> linear_view(recording).outputs.round(2).tolist()
     [[6.4, 6.0, 20.0], [7.54, 7.2, 20.0], [8.69, 8.39, 20.0]]
     """
-    choice = _refuse_other(recording)
+    choice = recording.view
+    if not isinstance(choice, StructureAndMotion) or recording.names != NAMES:
+        raise ValueError(f"the linear view needs the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}")
     view, truth, signal = LinearView(choice), recording.truth, recording.signal
     return replace(
         recording,

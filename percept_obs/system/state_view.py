@@ -84,13 +84,10 @@ class StateView(OnePoint):
 
     def __post_init__(self) -> None:
         for name in ("rate", "back", "powers", "formulas"):
-            if len(getattr(self, name)) != len(self.state):
-                raise ValueError(
-                    f"the {self.name} has {len(getattr(self, name))} entries of {name}; expected {len(self.state)}, as "
-                    f"many as its state has: {', '.join(map(str, self.state))}"
-                )
+            if (count := len(getattr(self, name))) != len(self.state):
+                raise ValueError(f"{name} of the {self.name} has {count} entries; the state has {len(self.state)}")
         if strange := {*self.usual, *self.guess} - {*self.formulas}:
-            raise ValueError(f"{', '.join(map(str, strange))} of `usual` or `guess` is no coordinate of the {self.name}")
+            raise ValueError(f"{strange} of `usual` or `guess` are no coordinates of the {self.name}")
         again = [e.subs(self.formulas, simultaneous=True) for e in self.back]
         at = {s: sp.Rational(k + 3, 7) for k, s in enumerate(self.state)}
         if any(abs(sp.N(e.subs(at) - at[s])) > 1e-9 for e, s in zip(again, self.state, strict=True)):

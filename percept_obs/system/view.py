@@ -88,11 +88,6 @@ class OnePoint(ABC):
     def coordinates(self) -> tuple[sp.Symbol, ...]:
         """Symbols of all coordinates."""
 
-    @property
-    @abstractmethod
-    def lengths(self) -> tuple[int, ...]:
-        """Power of the unit of length in each coordinate, and then in each parameter: -1 for 1/m."""
-
     @abstractmethod
     def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse distances in 1/m, shape (...)."""
@@ -104,13 +99,9 @@ class OnePoint(ABC):
         return self._all(coordinates)[..., : len(self.image_coordinates)]
 
     def _all(self, coordinates: ArrayLike) -> Array:
-        """Values of all coordinates as an array of shape (..., n); ValueError for another shape."""
-        array, names = numbers(coordinates, "the coordinates"), self.coordinates
-        if array.shape[-1:] != (len(names),):
-            raise ValueError(
-                f"the coordinates have shape {array.shape}; expected (..., {len(names)}): {', '.join(map(str, names))}"
-            )
-        return array
+        """Values of all coordinates, shape (..., n); ValueError for another shape."""
+        names = [symbol.name for symbol in self.coordinates]
+        return numbers(coordinates, f"the coordinates {', '.join(names)}", len(names))
 
     @property
     def judged(self) -> str:
@@ -121,7 +112,9 @@ class OnePoint(ABC):
         """|estimated distance / true distance - 1|, shape (K,); see `View`."""
         true, found = self.inverse(truth), self.inverse(estimate)
         if true.shape != found.shape:
-            raise ValueError(f"the truth has shape {np.shape(truth)}, the estimate {np.shape(estimate)}; expected the same")
+            raise ValueError(
+                f"the truth is of shape {np.shape(truth)}, the estimate {np.shape(estimate)}; make them fit"
+            )
         there = np.isfinite(estimate).all(axis=-1)
         error = np.where(there, np.inf, np.nan)
         return np.abs(np.divide(true, found, out=error + 1, where=there & (found > 0)) - 1)

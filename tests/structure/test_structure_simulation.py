@@ -198,7 +198,7 @@ def test_what_does_not_fit_is_refused():
         (DoesNotFit, lambda: track(recording, fourth), "made for the scaled pinhole with d_s, v_c3, v_p1 unknown"),
         (DoesNotFit, lambda: track(of_images, ismo(CASE.choice.form)), "was made for the scaled pinhole"),
         (ValueError, lambda: moving_window_least_squares(recording, 0.5), "but the recording shows the scaled pinhole"),
-        (ValueError, lambda: linear_view(of_images), "this needs the outputs y1, y2, ybar3"),
+        (ValueError, lambda: linear_view(of_images), "the linear view needs the outputs y1, y2, ybar3"),
         (ValueError, lambda: seen_as(recording, unscaled, rigid(point_velocity=STILL)), "has no values for d_s; give"),
     ):
         with pytest.raises(error, match=message):

@@ -109,10 +109,11 @@ class ImagingSurface(OnePoint):
                 f"the surface {self.name!r} has {len(self.image)} image coordinates and a ray of "
                 f"{len(self.ray)} entries; it needs at least one image coordinate and a ray of three entries"
             )
-        letters = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray, *self.region)))
         for symbol, value in self.values.items():
-            if symbol not in letters or not np.isfinite(value):
-                raise ValueError(f"the surface {self.name!r} has {symbol} = {value}; give its own letters finite numbers")
+            if symbol not in (*self.parameters, *self.radii) or not np.isfinite(value):
+                raise ValueError(
+                    f"the surface {self.name!r} has {symbol} = {value}; give its own letters finite numbers"
+                )
         self._refuse_a_wrong_ray()
 
     def __hash__(self) -> int:
@@ -143,7 +144,7 @@ class ImagingSurface(OnePoint):
     @cached_property
     def parameters(self) -> tuple[sp.Symbol, ...]:
         """Symbols that shape the surface, by name."""
-        used = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray)))
+        used = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray, *self.region)))
         return tuple(sorted(used - set(POINT) - set(self.image_coordinates), key=lambda s: s.name))
 
     @property
