@@ -42,8 +42,7 @@ class Frames:
     Raises
     ------
     ValueError
-        If a file is no PNG or JPEG, a value is out of range, there are not as many times as images, or times do not
-        increase.
+        If a file is no PNG or JPEG, a value is out of range, times are not as many as images, or do not increase.
     TooMuchWork
         If the frames are too large together.
 

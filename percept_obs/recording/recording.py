@@ -94,7 +94,7 @@ class Recording:
     BehindCamera
         If a point that is seen is not in front of the camera by its truth.
     ValueError
-        If shapes do not fit, times do not increase, values are not finite where they must be, or all outputs are NaN.
+        If shapes do not fit, times do not increase, values are not finite that must be, or one point is never seen.
 
     Warns
     -----
@@ -185,8 +185,8 @@ class Recording:
         valueless = [str(symbol) for symbol in self.view.parameters if symbol not in self.view.values]
         if valueless:
             raise ValueError(f"the {self.view.name} has no values for {', '.join(valueless)}; give them numbers first")
-        if np.isinf(self.outputs).any() or np.isnan(self.outputs).all():
-            raise ValueError("outputs are finite, or NaN where a sample was lost; at least one sample is needed")
+        if np.isinf(self.outputs).any() or (not self.view.point_shape and np.isnan(self.outputs).all()):
+            raise ValueError("outputs are finite, or NaN where a sample was lost; of one point one at least is needed")
 
     def _check_truth(self) -> None:
         if self.truth is None:

@@ -340,7 +340,10 @@ class StructureAndMotion(OnePoint):
     def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse depth d_s ybar3 in 1/m, shape (...), from ybar and theta; NaN where theta is missing or d_s <= 0."""
         ybar, theta = np.split(self._all(coordinates), [len(OUTPUTS)], axis=-1)
-        inverse: Array = self.quantities(theta).get(d_s.name, self.scale) * ybar[..., 2]
+        scale = self.quantities(theta).get(d_s.name, self.scale)
+        if scale is None:
+            raise ValueError("the scale d_s is neither unknown nor has it a number; set scale to it")
+        inverse = np.asarray(scale) * ybar[..., 2]
         return np.where(np.isnan(theta).any(axis=-1), np.nan, inverse)
 
     def locate(self, coordinates: ArrayLike) -> Array:

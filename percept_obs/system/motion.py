@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial, wraps
 from inspect import signature
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -120,10 +119,9 @@ class Motion:
         return bool((twice - 2 * self.b).expand().is_zero_matrix)
 
     @property
-    def values(self) -> Mapping[sp.Symbol, float]:
+    def values(self) -> dict[sp.Symbol, float]:
         """Numbers of a constant motion's symbols; empty if there are none or they vary."""
-        known = () if self.constants is None else self.constants[0].tolist()
-        return MappingProxyType(dict(zip(self.parameters, known, strict=bool(known))))
+        return {} if self.constants is None else dict(zip(self.parameters, self.constants[0].tolist(), strict=True))
 
     @cached_property
     def constants(self) -> Array | None:
@@ -305,7 +303,7 @@ def linear(
     --------
     >>> from percept_obs import linear
     >>> motion = linear([[0.0, 1.0], [0.0, 0.0]], [0.0, 0.5])
-    >>> dict(motion.values)
+    >>> motion.values
     {a12: 1.0, v2: 0.5}
     """
     shown = [np.shape(value)[-1] for value in (A, v) if value is not None and not callable(value) and np.ndim(value)]

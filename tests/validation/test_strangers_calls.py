@@ -96,7 +96,7 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: Imu(turning_noise=-1), "turning_noise is -1"),
     (lambda: Camera().drawn([0], (-1, 2)), "sizes from 0 on"),
     (lambda: Camera().samples(HOUSE, np.zeros(2), np.zeros((5, 6)), SOME), "5 rows for 2 times"),
-    (lambda: replace(SEEN, outputs=np.full((101, 2), math.nan)), "at least one sample is needed"),
+    (lambda: replace(SEEN, outputs=np.full((101, 2), math.nan)), "of one point one at least is needed"),
     (lambda: Sighting("a", 0, 1), "a whole number"),
     (lambda: render(record(HOUSE, 0.1)), "image coordinates of one point"),
     (lambda: Frames([np.full((2, 2), 1000.0)], [0.0], (-1, 1, -1, 1)), "expected 0 to 1"),
