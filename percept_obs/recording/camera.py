@@ -6,6 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,12 +14,14 @@ from numpy.typing import ArrayLike
 from percept_obs.compile import Array, Flags
 from percept_obs.system.motion import Motion
 from percept_obs.system.view import View
-from percept_obs.validation import checked, limit
+from percept_obs.validation import Kind, checked, limit
 
 TOO_SHORT = "a duration of {duration} s holds no two samples {period} s apart; record longer"
 """Reason why a recording of one sample is refused, here and in live labs."""
 
 Seed = np.random.Generator | int
+_SIZES = Kind("a tuple of sizes from 0 on", lambda v: isinstance(v, tuple) and all(size >= 0 for size in v))
+Shape = Annotated[tuple[int, ...], _SIZES]
 
 
 class _Noise:
@@ -26,8 +29,8 @@ class _Noise:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if not (np.isfinite(value) and value >= 0):
-                raise ValueError(f"the noise's {name} is {value}; it must be finite and not negative")
+            if not 0 <= value <= 1e150:  # its square is a float
+                raise ValueError(f"{name} is {value}; it must be finite and not negative, and at most 1e150")
 
 
 @checked
@@ -64,7 +67,7 @@ class Uniform(_Noise):
         """bound^2 / 3."""
         return self.bound**2 / 3
 
-    def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
+    def draw(self, generator: np.random.Generator, shape: Shape) -> Array:
         """Return independent samples of a shape."""
         return generator.uniform(-self.bound, self.bound, shape)
 
@@ -103,7 +106,7 @@ class Gaussian(_Noise):
         """sigma^2."""
         return self.sigma**2
 
-    def draw(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Array:
+    def draw(self, generator: np.random.Generator, shape: Shape) -> Array:
         """Return independent samples of a shape."""
         # Box and Muller's transform, so that other languages draw the same from the same uniform numbers
         first, second = generator.random((*shape, 2)).transpose(-1, *range(len(shape)))
@@ -187,6 +190,8 @@ class Camera:
         The truth has the coordinates of its view at the times.  Noise is drawn first, then the lost samples.
         """
         exact = scene.view.outputs(truth)
+        if len(exact) != len(time):
+            raise ValueError(f"the truth has {len(exact)} rows for {len(time)} times; give a row for each time")
         outputs = exact + self.noise.draw(generator, exact.shape)
         lost = self.lost(generator, exact.shape[:-1]) | ~(np.abs(exact).max(axis=-1) <= self.reach)
         if self.field_of_view < 2 * math.pi:
@@ -195,7 +200,7 @@ class Camera:
         outputs[lost] = np.nan
         return outputs, self.noise.variance
 
-    def drawn(self, seeds: Sequence[int], shape: tuple[int, ...]) -> Array:
+    def drawn(self, seeds: Sequence[int], shape: Shape) -> Array:
         """Return noise for each of S seeds, shape (S, K, ..., m); NaN where a sample is lost by chance."""
         noise = np.zeros((len(seeds), *shape))
         for k, generator in enumerate(_generators(seeds) if self.noise.variance or self.dropout else ()):
@@ -204,10 +209,10 @@ class Camera:
                 noise[k][self.lost(generator, shape[:-1])] = np.nan
         return noise
 
-    def lost(self, generator: np.random.Generator, shape: tuple[int, ...]) -> Flags:
+    def lost(self, generator: np.random.Generator, shape: Shape) -> Flags:
         """Return True for samples lost by chance; the first ones never are."""
         lost = generator.random(shape) < self.dropout
-        lost[0] = False
+        lost[:1] = False
         return lost
 
 

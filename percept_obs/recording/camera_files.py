@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import reprlib
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -10,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.recording.text_table import PathLike
+from percept_obs.recording.text_table import PathLike, existing
 from percept_obs.validation import checked, needed
 
 __all__ = ["Mount", "read_mount"]
@@ -134,9 +133,7 @@ def _camera(path: PathLike, camera: str | None) -> tuple[str, dict[str, Any]]:
     needed("data", "yaml")
     import yaml  # type: ignore[import-untyped, unused-ignore]
 
-    file = os.fspath(path)
-    if not Path(path).is_file():
-        raise FileNotFoundError(f"the path names '{file}', where there is no file; name a YAML file of a camera")
+    file = existing(path, "a YAML file of a camera")
 
     class Loader(yaml.SafeLoader):
         """Safe, and knows the matrices of OpenCV."""

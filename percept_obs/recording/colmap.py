@@ -6,7 +6,7 @@ import math
 import os
 import re
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -18,7 +18,7 @@ from percept_obs.compile import Array, Indices
 from percept_obs.recording import Recording
 from percept_obs.recording.pixels import Lens, PixelCamera
 from percept_obs.recording.poses import Poses
-from percept_obs.recording.text_table import SECONDS, Clock, PathLike
+from percept_obs.recording.text_table import SECONDS, Clock, PathLike, existing
 from percept_obs.recording.track_table import refuse_parts, tracks_of_points
 from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import checked, load_pandas, positive
@@ -44,6 +44,7 @@ MODELS = MappingProxyType(
 """Places of fx, fy, cx, cy and the lens among the parameters of COLMAP's models, in the order of their numbers."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class ColmapModel:
     """A camera's poses and the points that it saw, in the model's own unit of length.
@@ -143,9 +144,11 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
     """
     if rate is not None:
         positive(rate=rate)
+        if clock != SECONDS:
+            raise ValueError(f"the rate is {rate} and the clock {clock}; give one of the two for the images' times")
     place = Path(folder)
     try:
-        lenses, heads, bodies, world = (_binary if (place / "cameras.bin").is_file() else _text)(place)
+        lenses, heads, bodies, world = (_binary if os.path.isfile(place / "cameras.bin") else _text)(place)
         names = [head[9] for head in heads]
         numbers = np.array([head[1:8] for head in heads], dtype=float).reshape(len(heads), 7)
         used = {head[8] for head in heads}
@@ -189,11 +192,11 @@ Parts = tuple[dict[str, list[Any]], list[list[Any]], list[Array], dict[int, list
 def _text(place: Path) -> Parts:
     """Parts of a model in text files."""
     cameras, images, points = (place / name for name in ("cameras.txt", "images.txt", "points3D.txt"))
-    lenses = {row[0]: row[1:] for row in _rows(cameras)}
-    lines = [*_rows(images, blank=True)]
+    lenses = {row[0]: row[1:] for row in _rows(cameras, 5)}
+    lines = _rows(images, 9, every=2)
     heads = [[*head[:9], " ".join(head[9:])] for head in lines[::2]]
     bodies = [np.array(row, dtype=float).reshape(-1, 3) for row in lines[1::2]]
-    return lenses, heads, bodies, {int(row[0]): [float(cell) for cell in row[1:4]] for row in _rows(points)}
+    return lenses, heads, bodies, {int(row[0]): [float(cell) for cell in row[1:4]] for row in _rows(points, 4)}
 
 
 def _binary(place: Path) -> Parts:
@@ -226,20 +229,20 @@ def _binary(place: Path) -> Parts:
 
 def _packed(file: Path) -> tuple[bytes, tuple[int], int]:
     """Content of a binary file, the number of things in it, and where the first begins."""
-    if not file.is_file():
-        raise FileNotFoundError(f"there is no {file}; name a folder with cameras.bin, images.bin and points3D.bin")
+    existing(file, "a folder with cameras.bin, images.bin and points3D.bin")
     data = file.read_bytes()
     return data, struct.unpack_from("<Q", data), 8
 
 
-def _rows(file: Path, blank: bool = False) -> Iterator[list[str]]:
-    """Yield the cells of each row; comments are left out, and blank ones unless they count."""
-    if not file.is_file():
-        raise FileNotFoundError(f"there is no {file}; name a folder with cameras.txt, images.txt and points3D.txt")
+def _rows(file: Path, least: int, every: int = 1) -> list[list[str]]:
+    """Return the cells of each row, so many in every such one at least; comments are left out."""
+    existing(file, "a folder with cameras.txt, images.txt and points3D.txt")
     with open(file, encoding="utf-8") as lines:
-        for line in lines:
-            if not line.startswith("#") and (blank or line.strip()):
-                yield line.split()
+        numbered = [(number, line) for number, line in enumerate(lines, 1) if not line.startswith("#")]
+    rows = [(number, line.split()) for number, line in numbered if every > 1 or line.strip()]
+    if short := [number for number, cells in rows[::every] if len(cells) < least]:
+        raise ValueError(f"a row too short, line {short[0]} of {file.name}; expected {least} cells at least")
+    return [cells for _, cells in rows]
 
 
 def _times(names: Sequence[str], rate: float | None, clock: Clock) -> Array:

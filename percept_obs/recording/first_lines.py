@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
@@ -79,7 +78,7 @@ def refuse_others(path: str | os.PathLike[str], wanted: str) -> None:
     """Raise ValueError if a file is of another kind than the wanted one, and not of an unknown one."""
     # EuRoC's format with another clock is read, too.
     also = "seconds" if wanted == "EuRoC" else ""
-    if Path(path).is_file() and (kind := kind_of(path)) not in ("", wanted, also):
+    if (kind := kind_of(path)) not in ("", wanted, also):
         raise ValueError(f"{os.fspath(path)}: this is {KINDS[kind]}")
 
 

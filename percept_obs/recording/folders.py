@@ -19,6 +19,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.validation import checked
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Folder:
     """Contents of a recording's folder that could be read; None for each part that is not there.
@@ -94,8 +95,8 @@ def read_folder(path: PathLike, rate: float | None = None, repeated: Repeated = 
     'This is a folder of TUM, with 81 poses in poses.txt.'
     """
     place = Path(path)
-    if not place.is_dir():
-        raise FileNotFoundError(f"there is no folder {os.fspath(path)!r}; name one of COLMAP, EuRoC, TUM or KITTI")
+    if not os.path.isdir(place):
+        raise FileNotFoundError(f"there is no folder {str(path)[:300]!r}; name one of COLMAP, EuRoC, TUM or KITTI")
     readers = {"COLMAP": _colmap, "EuRoC": _euroc, "KITTI": _kitti, "TUM": _tum}
     for kind, read in readers.items():
         if found := read(place, rate, repeated):
@@ -149,7 +150,7 @@ def _kitti(place: Path, rate: float | None, repeated: Repeated) -> Found:
     if not files:
         return None
     times, calibration = place / "times.txt", place / "calib.txt"
-    poses = read_kitti(files[0], times if times.is_file() else None, rate)
+    poses = read_kitti(files[0], *((times, None) if times.is_file() else (None, rate)))
     said, fields = [f"{len(poses.time)} poses in {files[0].name}"], {"poses": poses}
     if calibration.is_file() and kind_of(calibration) == "calibration":
         first = calibration.read_text(encoding="utf-8").partition("\n")[0].split()

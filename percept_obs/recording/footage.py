@@ -8,8 +8,10 @@ from typing import overload
 
 from percept_obs.recording.frames import Frames
 from percept_obs.recording.recording import Recording
+from percept_obs.validation import checked
 
 
+@checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Footage(Sequence[Recording]):
     """Sequence of the recordings of a film's points, with what is known of the whole film.

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from percept_obs.compile import Array
 from percept_obs.recording.recording import Recording
 from percept_obs.system.signal import frozen
-from percept_obs.validation import checked, limit
+from percept_obs.validation import Kind, checked, limit, numbers
 
 SIGNATURES = (b"\x89PNG", b"\xff\xd8\xff")
 """First bytes of a PNG file and of a JPEG file."""
@@ -42,7 +42,7 @@ class Frames:
     Raises
     ------
     ValueError
-        If a file is no PNG or JPEG, there are not as many times as images, or times do not increase.
+        If a file is no PNG or JPEG, a value is out of range, times are not as many as images, or do not increase.
     TooMuchWork
         If the frames are too large together.
 
@@ -57,7 +57,7 @@ class Frames:
     2
     """
 
-    images: Any
+    images: Annotated[Any, Kind("a folder, or a sequence of files or arrays", lambda v: isinstance(v, Path | Iterable))]
     time: ArrayLike
     extent: Sequence[float]
 
@@ -89,15 +89,16 @@ def _encoded(image: Any, number: int) -> bytes:
             named = "" if isinstance(image, bytes) else f" {str(image)!r},"
             raise ValueError(f"frame {number},{named} is no PNG or JPEG file; convert it")
         return data
-    pixels = np.asarray(image)
-    if pixels.dtype.kind == "f":
-        pixels = np.round(255 * np.clip(pixels, 0, 1))
+    pixels = numbers(image, f"the pixels of frame {number}")
+    most = 1 if np.asarray(image).dtype.kind in "bf" else 255
     if pixels.ndim not in (2, 3) or (pixels.ndim == 3 and pixels.shape[2] != 3) or not pixels.size:
         raise ValueError(f"frame {number} has the shape {pixels.shape}; expected (h, w), or (h, w, 3) for colours")
+    if not (pixels.min() >= 0 and pixels.max() <= most):
+        raise ValueError(f"frame {number} has values from {pixels.min()} to {pixels.max()}; expected 0 to {most}")
     from PIL.Image import fromarray  # matplotlib brings it
 
     written = io.BytesIO()
-    fromarray(np.clip(pixels, 0, 255).astype(np.uint8)).save(written, "PNG")
+    fromarray(np.round(255 / most * pixels).astype(np.uint8)).save(written, "PNG")
     return written.getvalue()
 
 
@@ -121,7 +122,7 @@ def render(recording: Recording, count: int = 60, size: int = 160) -> Frames:
     Raises
     ------
     ValueError
-        If the recording has no truth.
+        If the recording has no truth, or is not of one point.
 
     See Also
     --------
@@ -135,14 +136,16 @@ def render(recording: Recording, count: int = 60, size: int = 160) -> Frames:
     >>> len(film.images)
     2
     """
-    if recording.truth is None:
-        raise ValueError("the recording has no truth to draw; give frames of its camera instead")
+    truth = recording.truth
+    known = np.flatnonzero(truth is not None and np.isfinite(truth).all(axis=-1))
+    if truth is None or not len(known) or len(recording.imaging_surface.image) < 2:
+        raise ValueError("the recording has no truth to draw in two dimensions; give frames of its camera instead")
     if count < 1 or size < 2:
         raise ValueError(f"{count} frames of {size} pixels a side are none; take at least 1 frame of 2 pixels")
-    count = min(count, len(recording.time))
+    count = min(count, len(known))
     limit(float(size) ** 2 * count, f"pixels, from {count} frames of the size {size}", "take fewer or smaller frames")
-    which = np.unique(np.linspace(0, len(recording.time) - 1, count).astype(int))
-    y1, y2, inverse = recording.truth[which][:, [0, 1, -1]].T
+    which = known[np.linspace(0, len(known) - 1, count).astype(int)]
+    y1, y2, inverse = truth[which][:, [0, 1, -1]].T
     low, high = (np.array([bound(y1), bound(y2)]) for bound in (np.min, np.max))
     middle, half = (low + high) / 2, 0.65 * max(float((high - low).max()), 0.2)
     left, right, lower, upper = middle[0] - half, middle[0] + half, middle[1] - half, middle[1] + half

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from percept_obs.compile import Array
-from percept_obs.recording.camera import Seed, seeded
+from percept_obs.recording.camera import Seed, _Noise, seeded
 from percept_obs.recording.text_table import NANOSECONDS, Clock, PathLike, Repeated, read_table
 from percept_obs.system.inertial import b_a, b_w, imu
 from percept_obs.system.motion import Motion
-from percept_obs.validation import checked, positive
+from percept_obs.validation import checked, limit, positive
 
 NAMES = ("t", "w_x", "w_y", "w_z", "a_x", "a_y", "a_z")
 EXAMPLE = "1403636579758555392,-0.0991,0.1472,0.0272,8.1476,-0.3759,-2.4026"
@@ -20,7 +20,7 @@ EXAMPLE = "1403636579758555392,-0.0991,0.1472,0.0272,8.1476,-0.3759,-2.4026"
 
 @checked
 @dataclass(frozen=True)
-class Imu:
+class Imu(_Noise):
     """Errors of an IMU: noise and biases, the same in each axis.
 
     The defaults are those of the Bosch BMI160 of many telephones, as the TUM VI benchmark gives them (Schubert et al.
@@ -55,9 +55,16 @@ class Imu:
     force_walk: float = 8.6e-4
     rate: float = 200.0
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        positive(rate=self.rate)
+
     def measured(self, motion: Motion, duration: float, seed: Seed) -> tuple[Motion, Callable[[Array], Array]]:
         """Return an IMU's motion as this one measures it, and its true biases as a function of times, shape (K, 6)."""
-        positive(rate=self.rate, duration=duration)
+        positive(duration=duration)
+        if len(motion.parameters) != 6:
+            raise ValueError(f"an IMU measures a motion of imu(), not the {motion.name} motion")
+        limit(24 * duration * self.rate, f"numbers of {duration:g} s", "lower the rate or shorten the duration")
         draw = seeded(seed)
         times = np.arange(np.ceil(duration * self.rate) + 2) / self.rate
         pairs = (

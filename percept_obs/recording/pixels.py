@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags, vectorised
 from percept_obs.recording.camera_files import fields_of_camera
+from percept_obs.recording.plausibility import Unlikely
 from percept_obs.recording.text_table import PathLike
-from percept_obs.validation import checked, numbers
+from percept_obs.validation import checked, numbers, warn
 
 LENS = sp.symbols("k1 k2 p1 p2 k3 k4 k5 k6", real=True)
 """Coefficients of a lens in OpenCV's order: k of the radius, p of a lens that is not centred."""
@@ -45,6 +46,7 @@ class PixelCamera:
         Principal point in pixels.
     size : pair of ints, optional
         Width and height of the image in pixels; an image without borders when left out.
+        A centre outside of it gets a warning.
     distortion : sequence of floats, optional
         Numbers k1, k2, p1, p2, then k3, then k4, k5, k6 of OpenCV's model, as its calibration gives them: four, five,
         eight, or none for images that are rectified.  Of an equidistant lens four, k1 to k4, or none.
@@ -103,6 +105,8 @@ class PixelCamera:
                 f"numbers, {self._coefficients}, or none"
             )
         vars(self)["distortion"] = tuple(lens.tolist())
+        if not self.sees(self.centre):
+            warn(Unlikely(f"the centre {self.centre} is outside of the image {self.size}; are both of one size?"))
 
     @classmethod
     def from_yaml(cls, path: PathLike, camera: str | None = None) -> Any:

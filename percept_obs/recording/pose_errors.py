@@ -10,7 +10,7 @@ from percept_obs.compile import Array
 from percept_obs.recording.normal import project_out
 from percept_obs.recording.reckoning import reckon
 from percept_obs.system.motion import Motion
-from percept_obs.validation import travels
+from percept_obs.validation import checked
 
 WINDOW = 1.0
 """Seconds over which a virtual landmark is followed; the next window begins half of it later."""
@@ -22,7 +22,7 @@ NEAR = 0.2
 """Share of its depth at which a virtual landmark is left out, for it comes too near to the camera."""
 
 
-@travels
+@checked
 @dataclass(frozen=True, eq=False)
 class PoseErrors:
     """Errors of the poses that a motion was made from.

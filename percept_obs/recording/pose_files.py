@@ -140,7 +140,7 @@ def read_kitti(path: PathLike, times: PathLike | None = None, rate: float | None
     FileNotFoundError
         If there is no such file.
     ValueError
-        If neither times nor a rate are given, their number is another, or the file has no such rows.
+        If neither times nor a rate are given, or both, their number is another, or the file has no such rows.
 
     See Also
     --------
@@ -162,13 +162,13 @@ def read_kitti(path: PathLike, times: PathLike | None = None, rate: float | None
     names = tuple(f"{letter}{row}" for row in "123" for letter in ("r1", "r2", "r3", "p"))
     table = read_table(path, names, r"\s+", "1 0 0 0 0 1 0 0 0 0 1 0", kind="KITTI")
     rows = np.stack([table.numbers(name, gaps=False) for name in names], axis=-1).reshape(-1, 3, 4)
+    if (times is None) == (rate is None):
+        raise ValueError(f"{table.file}: KITTI's poses have no times; give times='times.txt', or rate=10, not both")
     if times is not None:
         time = read_table(times, ("time",), r"\s+", "1.036224e-01", kind="times").steps("time", SECONDS, "refuse")[0]
     elif rate is not None:
         positive(rate=rate)
         time = np.arange(len(rows)) / rate
-    else:
-        raise ValueError(f"{table.file}: KITTI's poses have no times; give times='times.txt', or rate=10")
     if len(time) != len(rows):
         raise ValueError(f"{table.file} has {len(rows)} poses, and {os.fspath(times or '')} {len(time)} times")
     try:

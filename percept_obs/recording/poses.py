@@ -15,7 +15,7 @@ from percept_obs.recording.pose_errors import PoseErrors
 from percept_obs.recording.smoother import FEWEST, Smoothed, smooth, smooth_turns
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import readonly
-from percept_obs.validation import checked, numbers, travels, warn
+from percept_obs.validation import checked, numbers, warn
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -141,16 +141,22 @@ class Poses:
         >>> body.mounted([0, 0, 0.2], [0, 0, 0, 1]).position[0].tolist()
         [1.0, 0.0, 0.2]
         """
-        mount = Poses(np.arange(2.0), np.tile(position, (2, 1)), np.stack([orientation, orientation]))
-        (shift,) = numbers([shift], "the shift of the clocks", 1)
-        place, turn = mount.position[0], mount.rotation[0]
-        matrix = turn.as_matrix()
+        place, turn = numbers(position, "the position"), numbers(orientation, "the orientation")
+        finite = np.isfinite([*place.ravel(), *turn.ravel(), shift]).all()
+        if place.shape != (3,) or turn.shape not in ((4,), (3, 3)) or not finite:
+            raise ValueError(
+                f"the position has shape {place.shape}, the orientation {turn.shape}, the shift is {shift} s; expected "
+                "(3,), and (4,) of a quaternion x, y, z, w or (3, 3) of a matrix, all finite"
+            )
+        mount = Poses(np.arange(2.0), np.tile(place, (2, 1)), np.stack([turn, turn]))
+        place, turned = mount.position[0], mount.rotation[0]
+        matrix = turned.as_matrix()
         matrix.setflags(write=False)
         return replace(
             self,
             time=self.time - shift,
             position=self.position + self.rotation.apply(place.copy()),
-            orientation=(self.rotation * turn).as_quat(),
+            orientation=(self.rotation * turned).as_quat(),
             mount=(place, matrix),
         )
 
@@ -255,7 +261,7 @@ def _densely(time: Array, placed: Smoothed, turned: Rotation, turning: Smoothed,
     return CameraPath(times, position, rotation.as_quat(), rotation.inv().apply(speed), rate, errors)
 
 
-@travels
+@checked
 @dataclass(frozen=True, eq=False)
 class CameraPath:
     """A camera's poses and velocities at K times.

@@ -28,6 +28,7 @@ USUAL_SPEED = 0.6
 """Speed in units of length a second that default gains are made for, about that of Ma's examples."""
 
 
+@checked
 @dataclass(frozen=True)
 class Sighting:
     """Samples between which a point is in sight.
@@ -93,7 +94,7 @@ class Recording:
     BehindCamera
         If a point that is seen is not in front of the camera by its truth.
     ValueError
-        If shapes do not fit, times do not increase, or values are not finite where they must be.
+        If shapes do not fit, times do not increase, values are not finite that must be, or one point is never seen.
 
     Warns
     -----
@@ -184,8 +185,8 @@ class Recording:
         valueless = [str(symbol) for symbol in self.view.parameters if symbol not in self.view.values]
         if valueless:
             raise ValueError(f"the {self.view.name} has no values for {', '.join(valueless)}; give them numbers first")
-        if np.isinf(self.outputs).any():
-            raise ValueError("outputs are finite, or NaN where a sample was lost")
+        if np.isinf(self.outputs).any() or (not self.view.point_shape and np.isnan(self.outputs).all()):
+            raise ValueError("outputs are finite, or NaN where a sample was lost; of one point one at least is needed")
 
     def _check_truth(self) -> None:
         if self.truth is None:
@@ -269,9 +270,9 @@ class Recording:
         for values in (*known, *self.distances.values()):
             if np.isfinite(values).any():
                 return float(np.nanmedian(values))
-        if not isinstance(self.view, ImagingSurface) or len(self.names) < len(self.view.image_coordinates):
-            return math.inf
         rows, surface = np.flatnonzero(self.seen), self.view
+        if not isinstance(surface, ImagingSurface) or len(self.names) < len(surface.image_coordinates) or not len(rows):
+            return math.inf
         ray = vectorised(surface.image_coordinates, surface.ray, surface.values)
         rays = np.stack(ray(*self.outputs[rows].T), axis=-1)
         rays /= np.linalg.norm(rays, axis=1, keepdims=True)

@@ -11,7 +11,6 @@ import os
 import zlib
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 from scipy.io import loadmat
@@ -23,6 +22,7 @@ from percept_obs.recording import Recording, Sighting
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.plausibility import Unlikely
 from percept_obs.recording.poses import CameraPath, Poses
+from percept_obs.recording.text_table import existing
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
@@ -182,9 +182,7 @@ def read_stereo_mat(
     >>> tracks = read_stereo_mat("2011_09_26_drive_0036_sync_KLT.mat", shortest=1.0)  # doctest: +SKIP
     >>> recordings = tracks.recordings("KITTI 0036", pixel_sigma=0.5)  # doctest: +SKIP
     """
-    file = Path(path)
-    if not file.is_file():
-        raise FileNotFoundError(f"the path names '{file}', where there is no file; name a MATLAB file of stereo tracks")
+    file = existing(path, "a MATLAB file of stereo tracks")
     try:
         recorded = loadmat(file, variable_names=(*VARIABLES, LANDMARKS))
     except (ValueError, TypeError, IndexError, NotImplementedError, MatReadError, OSError, zlib.error) as error:

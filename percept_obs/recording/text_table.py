@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from io import StringIO
 from numbers import Integral
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
@@ -174,6 +173,15 @@ class TextTable:
         return kept, ~again
 
 
+def existing(path: PathLike, what: str) -> str:
+    """Return a path as text; FileNotFoundError unless a file is there, which says what to name."""
+    file = os.fspath(path)
+    if not os.path.isfile(file):  # False for text that can be no path, where pathlib raises
+        shown = file[:300].partition("\n")[0]
+        raise FileNotFoundError(f"the path names '{shown}', where there is no file; name {what}")
+    return file
+
+
 def read_table(
     path: PathLike,
     names: tuple[str, ...] = (),
@@ -189,9 +197,7 @@ def read_table(
     whose first lines are those of another kind is refused.
     """
     pd = load_pandas()
-    file = os.fspath(path)
-    if not Path(path).is_file():
-        raise FileNotFoundError(f"the path names '{file}', where there is no file; name a text file with a table")
+    file = existing(path, "a text file with a table")
     refuse_others(path, kind)
     layout: dict[str, Any] = {"sep": separator, "skipinitialspace": True, "keep_default_na": False, "header": None}
     header: list[str] = []

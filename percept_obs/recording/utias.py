@@ -130,9 +130,9 @@ def utias_tracks(path: str | os.PathLike[str] | None = None) -> StereoTracks:
 def _checked(place: Path, origin: str) -> Path:
     """Return the file that a path or a folder names, its hash checked."""
     place = place.expanduser()
-    file = place / UTIAS_FILE if place.is_dir() else place
-    if not file.is_file():
-        problem = f"a folder without {UTIAS_FILE}" if place.is_dir() else "neither a file nor a folder"
+    file = place / UTIAS_FILE if os.path.isdir(place) else place
+    if not os.path.isfile(file):
+        problem = f"a folder without {UTIAS_FILE}" if os.path.isdir(place) else "neither a file nor a folder"
         raise FileNotFoundError(
             f"{origin} names '{place}', which is {problem}; name {UTIAS_FILE} or a folder that holds it, "
             f"or name nothing and it is fetched from {UTIAS_ADDRESS}"

@@ -237,9 +237,10 @@ class StructureAndMotion(OnePoint):
 
     def theta_values(self, scale: ArrayLike, motion: Motion, times: ArrayLike) -> Array:
         """True theta of a rigid motion at some times, shape (K, n), for a true scale d_s in 1/m."""
-        times = np.atleast_1d(numbers(times, "the times"))
-        if np.ndim(scale) and np.shape(scale) != times.shape:
-            raise ValueError(f"the scale has the shape {np.shape(scale)}; give one number, or one for each time")
+        self.known_motion(motion)  # which refuses another one
+        times, scale = np.atleast_1d(numbers(times, "the times")), numbers(scale, "the scale")
+        if scale.shape not in ((), times.shape) or not (np.isfinite(scale) & (scale > 0)).all():
+            raise ValueError(f"the scale d_s is {scale}; give a positive number, or one for each time")
         columns = np.broadcast_to(motion.known(times), (len(times), len(motion.parameters))).T
         return np.stack(vectorised((d_s, *motion.parameters), self.theta)(scale, *columns), axis=-1)
 
@@ -257,9 +258,7 @@ class StructureAndMotion(OnePoint):
         ValueError
             If theta has the wrong shape, or d_s was estimated earlier and its value is not set.
         """
-        theta = np.asarray(theta, dtype=float)
-        if theta.shape[-1:] != (len(self.unknown),):
-            raise ValueError(f"theta has shape {theta.shape}; expected (..., {len(self.unknown)}): {self.theta}")
+        theta = numbers(theta, f"the values of theta = {self.theta}", len(self.unknown))
         by_name = dict(zip(self.unknown, np.moveaxis(theta, -1, 0), strict=True))
         if d_s.name not in (*self.unknown, *self.earlier):
             return by_name
@@ -340,13 +339,16 @@ class StructureAndMotion(OnePoint):
 
     def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse depth d_s ybar3 in 1/m, shape (...), from ybar and theta; NaN where theta is missing or d_s <= 0."""
-        ybar, theta = np.split(np.asarray(coordinates, dtype=float), [len(OUTPUTS)], axis=-1)
-        inverse: Array = self.quantities(theta).get(d_s.name, self.scale) * ybar[..., 2]
+        ybar, theta = np.split(self._all(coordinates), [len(OUTPUTS)], axis=-1)
+        scale = self.quantities(theta).get(d_s.name, self.scale)
+        if scale is None:
+            raise ValueError("the scale d_s is neither unknown nor has it a number; set scale to it")
+        inverse = np.asarray(scale) * ybar[..., 2]
         return np.where(np.isnan(theta).any(axis=-1), np.nan, inverse)
 
     def locate(self, coordinates: ArrayLike) -> Array:
         """Points in metres, shape (..., 3), from ybar and theta; infinite where no positive inverse depth follows."""
-        image = np.asarray(coordinates, dtype=float)[..., :2]
+        image = self._all(coordinates)[..., :2]
         return pinhole().locate(np.concatenate([image, self.inverse(coordinates)[..., None]], axis=-1))
 
 

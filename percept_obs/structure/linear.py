@@ -16,7 +16,7 @@ from percept_obs.structure.dynamics import d_s
 from percept_obs.system.forms import CanonicalForm
 from percept_obs.system.motion import rigid
 from percept_obs.system.view import OnePoint
-from percept_obs.validation import checked
+from percept_obs.validation import checked, numbers
 
 OUTPUTS = sp.symbols("xbar1:4", real=True)
 
@@ -65,7 +65,7 @@ class LinearView(OnePoint):
 
     def scaled(self, ybar: ArrayLike) -> Array:
         """Scaled positions of (y1, y2, ybar3), shape (..., 3); NaN where ybar3 is not positive."""
-        ybar = np.asarray(ybar, dtype=float)
+        ybar = numbers(ybar, "the values of (y1, y2, ybar3)", 3)
         inverse = np.where(ybar[..., 2:] > 0, ybar[..., 2:], np.nan)
         return np.concatenate([ybar[..., :2], np.ones_like(inverse)], axis=-1) / inverse
 
@@ -115,9 +115,8 @@ class LinearView(OnePoint):
         """Largest relative error of the unknowns, shape (K,), as of the choice."""
         return self.choice.relative_error(self._ybar(truth), self._ybar(estimate), known)
 
-    @staticmethod
-    def _ybar(coordinates: ArrayLike) -> Array:
+    def _ybar(self, coordinates: ArrayLike) -> Array:
         """The choice's coordinates (ybar, theta) from (xbar, theta)."""
-        position, theta = np.split(np.asarray(coordinates, dtype=float), [len(OUTPUTS)], axis=-1)
+        position, theta = np.split(self._all(coordinates), [len(OUTPUTS)], axis=-1)
         depth = np.where(position[..., 2:] > 0, position[..., 2:], np.nan)
         return np.concatenate([position[..., :2] / depth, 1 / depth, theta], axis=-1)

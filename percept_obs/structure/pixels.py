@@ -33,7 +33,7 @@ class SignalToNoise:
     Raises
     ------
     ValueError
-        If the ratio is not finite.
+        If the ratio is not a number of decibels from -3000 to 3000.
 
     See Also
     --------
@@ -50,8 +50,8 @@ class SignalToNoise:
     decibels: float
 
     def __post_init__(self) -> None:
-        if not np.isfinite(self.decibels):
-            raise ValueError(f"the ratio is {self.decibels} dB; it must be finite")
+        if not abs(self.decibels) <= 3000:
+            raise ValueError(f"the ratio is {self.decibels} dB; it must be finite, from -3000 to 3000")
 
     def sigma(self, pixels: ArrayLike) -> float:
         """Standard deviation of the noise on these pixel coordinates, in pixels."""

@@ -96,6 +96,8 @@ class GivenDepth:
 
     def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """See `DepthSource`."""
+        if exact.shape != time.shape:
+            raise ValueError(f"the exact depths have shape {exact.shape}, the times {time.shape}; expected the same")
         return exact + self.bias + self.drift * time + self.noise.draw(generator, exact.shape)
 
 
@@ -115,7 +117,7 @@ class PatchDepth:
     Raises
     ------
     ValueError
-        If the offsets are not finite.
+        If the offsets are not finite, or of fewer than four points.
 
     See Also
     --------
@@ -136,8 +138,8 @@ class PatchDepth:
 
     def __post_init__(self) -> None:
         offsets = numbers(self.offsets, "the offsets", "n", 3)
-        if not np.isfinite(offsets).all():
-            raise ValueError("the offsets are not finite; give n points of a patch in metres, as from grid_patch()")
+        if not np.isfinite(offsets).all() or len(np.unique(offsets, axis=0)) < 4:
+            raise ValueError("the offsets are not finite, or of fewer than four points; take those of grid_patch()")
 
     def depths(self, images: Array, exact: Array, time: Array, generator: np.random.Generator) -> Array:
         """See `DepthSource`."""
@@ -279,7 +281,7 @@ class ScaledDepthCamera(Camera):
     Raises
     ------
     ValueError
-        If a number is out of its range, as of `Camera`.
+        If a number is out of its range, as of `Camera`, or the noise is given twice.
 
     See Also
     --------
@@ -300,6 +302,11 @@ class ScaledDepthCamera(Camera):
     pixels: PixelCamera = IMAGE_PLANE
     ratio: SignalToNoise | None = None
     depth: DepthSource = EXACT_DEPTH
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if (self.ratio and self.noise != NO_NOISE) or self.field_of_view != 2 * math.pi:
+            raise ValueError("give a noise or a ratio, and no field_of_view: the size of pixels=PixelCamera(...) is it")
 
     def samples(self, scene: Scene, time: Array, truth: Array, generator: np.random.Generator) -> tuple[Array, float]:
         """Samples as of `Camera`; noise is drawn for the pixels, then for the depth, then for the lost pictures.
@@ -350,7 +357,7 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
     Raises
     ------
     ValueError
-        If the scale is not positive.
+        If the recording is of something else, or the scale is not positive.
     ImpossibleChoice
         If a velocity that is said to be zero is not.
 
@@ -369,10 +376,10 @@ def seen_as(recording: Recording, choice: StructureAndMotion, motion: Motion, sc
     >>> other.view.theta
     (v_p1, v_p2, v_p3)
     """
+    if recording.names != NAMES:
+        raise ValueError(f"another choice needs the outputs {', '.join(NAMES)}, not {', '.join(recording.names)}")
     truth = None
     if scale is not None:
-        if not 0 < scale < math.inf:
-            raise ValueError(f"the scale d_s is {scale}; it is one over a distance in metres, finite and positive")
         ybar = recording.outputs if recording.truth is None else recording.truth[:, : len(OUTPUTS)]
         truth = np.hstack([ybar, choice.theta_values(scale, motion, recording.time)])
     return replace(recording, view=choice, motion=choice.known_motion(motion), truth=truth)

@@ -9,10 +9,12 @@ from typing import Any, overload
 import sympy as sp
 
 from percept_obs.compile import definitions
+from percept_obs.validation import checked
 
 __all__ = ["Derivation", "Step"]
 
 
+@checked
 @dataclass(frozen=True)
 class Step:
     """Step of a derivation: a reason and a formula.
@@ -58,6 +60,7 @@ class Step:
         return f"{self.reason}\n    {self.formula}"
 
 
+@checked
 @dataclass(frozen=True)
 class Derivation(Sequence[Step]):
     """Sequence of steps, shown as text and formulas in a notebook; a slice is a derivation, too.

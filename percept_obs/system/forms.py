@@ -15,10 +15,11 @@ from percept_obs.compile import Intermediate
 from percept_obs.system.derivation import Derivation, equals, rates, where
 from percept_obs.system.motion import Motion
 from percept_obs.system.view import View
-from percept_obs.validation import set_fields, travels
+from percept_obs.validation import checked, set_fields, travels
 
 
 @travels
+@checked
 class NotAffine(ValueError):
     """The measured outputs' rate is not affine in the hidden coordinates.
 
@@ -63,7 +64,7 @@ class NeedsMoreOutputs(ValueError):
         )
 
 
-@travels
+@checked
 @dataclass(frozen=True)
 class PartitionedSystem:
     """System with measured and hidden coordinates: (x1, x2)' = f(x1, x2).
@@ -85,6 +86,8 @@ class PartitionedSystem:
 
     Raises
     ------
+    ValueError
+        If a coordinate stands twice, or the rate has another number of entries.
     NotAffine
         By `canonical_form`, if there is none.
 
@@ -107,6 +110,15 @@ class PartitionedSystem:
     coordinates: tuple[sp.Symbol, ...]
     view: View | None = None
     motion: Motion | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        if sorted((*self.x1, *self.x2), key=str) != sorted(self.coordinates, key=str):
+            raise ValueError(f"x1 is {self.x1}, x2 {self.x2}; each of {self.coordinates} is in one of them, once")
+        n1, n2 = len(self.x1), len(self.x2)
+        for name, shape in {"w": (n2, n1), "phi": (n1, 1), "g": (n2, 1), "rate": (n1 + n2, 1)}.items():
+            found = getattr(vars(self).get(name), "shape", shape)  # a form's rate is made later, of the others
+            if found != shape:
+                raise ValueError(f"{name} has the shape {found}; expected {shape}: {n1} measured, {n2} hidden")
 
     @property
     def values(self) -> dict[sp.Symbol, float]:
@@ -164,6 +176,7 @@ def _called(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     return matrix
 
 
+@checked
 @dataclass(frozen=True)
 class CanonicalForm(PartitionedSystem):
     """Canonical form x1' = w^T x2 + phi, x2' = g, with x1 measured and x2 hidden (Ma 2005, (10), p. 65).
@@ -205,6 +218,7 @@ class CanonicalForm(PartitionedSystem):
     g: sp.ImmutableMatrix = field(kw_only=True)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         rate = sp.ImmutableMatrix([*(self.w.T * sp.ImmutableMatrix(self.x2) + self.phi), *self.g])
         set_fields(self, rate=rate, **{part: _called(part, getattr(self, part)) for part in ("w", "phi", "g")})
 

@@ -1,13 +1,13 @@
 """Camera and IMU: a landmark, the camera's speed and gravity in its own frame, with biases of the IMU as states."""
 
 from functools import cache
-from typing import Any
 
 import sympy as sp
 from numpy.typing import ArrayLike
 
 from percept_obs.system.motion import Motion, bound, cross
 from percept_obs.system.state_view import StateView
+from percept_obs.validation import Coefficients, checked
 
 w, a, p, v, g, b_w, b_a, u, q, c = (
     sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True))
@@ -16,7 +16,12 @@ w, a, p, v, g, b_w, b_a, u, q, c = (
 y1, y2, y3 = sp.symbols("y1:4", real=True)
 
 
-def imu(angular_velocity: Any = None, specific_force: Any = None, times: ArrayLike | None = None) -> Motion:
+@checked
+def imu(
+    angular_velocity: Coefficients | None = None,
+    specific_force: Coefficients | None = None,
+    times: ArrayLike | None = None,
+) -> Motion:
     """Return the motion that an IMU knows: its angular velocity w in rad/s and specific force a in m/s^2.
 
     Parameters

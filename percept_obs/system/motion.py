@@ -85,6 +85,13 @@ class Motion:
     errors: Any = None
     densities: Mapping[str, float] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        n = self.b.rows
+        if (self.A.shape, self.b.shape) != ((n, n), (n, 1)):
+            raise ValueError(f"A has the shape {self.A.shape} and b {self.b.shape}; expected (n, n) and (n, 1)")
+        if strange := {*self.densities} - {symbol.name for symbol in self.parameters}:
+            raise ValueError(f"densities are of {', '.join(strange)}, no parameters of the {self.name} motion")
+
     @cached_property
     def lengths(self) -> tuple[int, ...]:
         """Power of length of each parameter: 1 for those of b, else 0."""
@@ -330,19 +337,22 @@ def bound(
     """
     values, symbols = [value for value, _ in coefficients], tuple(s for _, block in coefficients for s in block)
     missing = [_title(block) for value, block in coefficients if value is None]
+    symbolic, moving = any(map(_has_symbols, values)), any(map(callable, values))
+    if times is not None and (symbolic or moving or len(missing) == len(values)):
+        raise ValueError("times are those of samples, and the motion has none; leave times out, or give arrays")
     if len(missing) == len(coefficients):
         return Motion(name, A, b, symbols)
     if missing:
         raise ValueError(
             f"{with_article(name)} motion takes all of its coefficients or none; give also {', '.join(missing)}"
         )
-    if any(map(_has_symbols, values)):
+    if symbolic:
         entries = [e for value, block in coefficients for e in matrix(value, _title(block), *block.shape)]
         A, b = (each.xreplace(dict(zip(symbols, entries, strict=True))) for each in (A, b))
         free = tuple(sorted(A.free_symbols | b.free_symbols, key=str))
         at = OverTime(Chain(np.atleast_2d, np.transpose), partial(breaks_of, TIME, (*A, *b)))
         return Motion(name, A, b, free, Signal(at) if free == (TIME,) else None)
-    if any(map(callable, values)):
+    if moving:
         functions = [_function(value, block) for value, block in coefficients]
         return Motion(name, A, b, symbols, Signal(OverTime(partial(_side_by_side, functions))))
     times = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
@@ -420,7 +430,7 @@ def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Array:
     if isinstance(value, sp.MatrixBase) and value.shape == block.shape:
         array = array.reshape(shape)
     if array.shape not in (shape, (count, *shape)):
-        sampled = f" or {(count, *shape)}" if count > 1 else ""
+        sampled = f" or {(count, *shape)}" if count > 1 else "; samples need times=" if array.shape[1:] == shape else ""
         raise ValueError(f"{_title(block)} has shape {array.shape}; expected {shape}{sampled}")
     if not np.isfinite(array).all():
         raise ValueError(f"{_title(block)} is not finite; remove or repair the NaN or infinite entries")
@@ -432,8 +442,8 @@ def _title(block: sp.ImmutableMatrix) -> str:
     """Name in messages of the argument that a block of symbols stands for."""
     first, last = block[0].name, block[len(block) - 1].name
     names = {"a": "A", "b": "b", "v": "v", "w": "angular_velocity", "v_c": "camera_velocity", "v_p": "point_velocity"}
-    names |= {"w_c": "camera_angular_velocity", "w_b": "body_angular_velocity"}
-    name = names.get(first.rstrip("0123456789_"), "a coefficient")
+    names |= {"w_c": "camera_angular_velocity", "w_b": "body_angular_velocity", "a_x": "acceleration"}
+    name = "specific_force" if first == "a1" else names.get(first.rstrip("0123456789_"), "a coefficient")
     return f"the motion's {name} ({first} ... {last})"
 
 

@@ -77,7 +77,7 @@ class Signal:
         if self.times is None or len(self.samples) == 1:
             return self.samples
         slack = slack_of(self.times)
-        if times.size and (times.min() < self.times[0] - slack or times.max() > self.times[-1] + slack):
+        if times.size and not (times.min() >= self.times[0] - slack and times.max() <= self.times[-1] + slack):
             raise ValueError(
                 f"the signal is known from {self.times[0]:.6g} to {self.times[-1]:.6g} s, but is asked for from "
                 f"{times.min():.6g} to {times.max():.6g} s; sample it longer or ask for less"

@@ -15,7 +15,7 @@ from percept_obs.compile import Array, vectorised
 from percept_obs.system.forms import PartitionedSystem, partition
 from percept_obs.system.motion import Motion
 from percept_obs.system.view import OnePoint
-from percept_obs.validation import checked
+from percept_obs.validation import checked, numbers
 
 Symbols = tuple[sp.Symbol, ...]
 
@@ -83,6 +83,11 @@ class StateView(OnePoint):
     guess: Mapping[sp.Symbol, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        for name in ("rate", "back", "powers", "formulas"):
+            if (count := len(getattr(self, name))) != len(self.state):
+                raise ValueError(f"{name} of the {self.name} has {count} entries; the state has {len(self.state)}")
+        if strange := {*self.usual, *self.guess} - {*self.formulas}:
+            raise ValueError(f"{strange} of `usual` or `guess` are no coordinates of the {self.name}")
         again = [e.subs(self.formulas, simultaneous=True) for e in self.back]
         at = {s: sp.Rational(k + 3, 7) for k, s in enumerate(self.state)}
         if any(abs(sp.N(e.subs(at) - at[s])) > 1e-9 for e, s in zip(again, self.state, strict=True)):
@@ -121,17 +126,17 @@ class StateView(OnePoint):
 
     def project(self, states: ArrayLike) -> Array:
         """Coordinates of states of shape (..., n)."""
-        columns = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
+        columns = np.moveaxis(numbers(states, "the states", len(self.state)), -1, 0)
         return np.stack(vectorised(self.state, list(self.formulas.values()))(*columns), axis=-1)
 
     def locate(self, coordinates: ArrayLike) -> Array:
         """Positions, shape (..., 2) or (..., 3): the state's first entries, as many as are lengths, at most three."""
-        columns = np.moveaxis(np.asarray(coordinates, dtype=float), -1, 0)
+        columns = np.moveaxis(self._all(coordinates), -1, 0)
         return np.stack(vectorised(self.coordinates, self.back[: min(3, sum(self.powers))])(*columns), axis=-1)
 
     def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse distances, shape (...): the last of the coordinates."""
-        return np.asarray(coordinates, dtype=float)[..., -1]
+        return self._all(coordinates)[..., -1]
 
     def partition(self, *names: str) -> PartitionedSystem:
         """Divide the coordinates into measured ones, by name, and hidden ones; `canonical_form` where there is one.

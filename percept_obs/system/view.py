@@ -11,6 +11,7 @@ import sympy as sp
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array
+from percept_obs.validation import numbers
 
 DISTANCE = "the distance"
 """Quantity that verdicts judge; labs use the same words."""
@@ -84,8 +85,8 @@ class OnePoint(ABC):
 
     @property
     @abstractmethod
-    def lengths(self) -> tuple[int, ...]:
-        """Power of the unit of length in each coordinate, and then in each parameter: -1 for 1/m."""
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of all coordinates."""
 
     @abstractmethod
     def inverse(self, coordinates: ArrayLike) -> Array:
@@ -95,7 +96,12 @@ class OnePoint(ABC):
 
     def outputs(self, coordinates: ArrayLike) -> Array:
         """Measured coordinates, shape (..., m), the first of all coordinates, shape (..., n)."""
-        return np.asarray(coordinates, dtype=float)[..., : len(self.image_coordinates)]
+        return self._all(coordinates)[..., : len(self.image_coordinates)]
+
+    def _all(self, coordinates: ArrayLike) -> Array:
+        """Values of all coordinates, shape (..., n); ValueError for another shape."""
+        names = [symbol.name for symbol in self.coordinates]
+        return numbers(coordinates, f"the coordinates {', '.join(names)}", len(names))
 
     @property
     def judged(self) -> str:
@@ -105,6 +111,10 @@ class OnePoint(ABC):
     def relative_error(self, truth: Array, estimate: Array, known: Array) -> Array:
         """|estimated distance / true distance - 1|, shape (K,); see `View`."""
         true, found = self.inverse(truth), self.inverse(estimate)
+        if true.shape != found.shape:
+            raise ValueError(
+                f"the truth is of shape {np.shape(truth)}, the estimate {np.shape(estimate)}; make them fit"
+            )
         there = np.isfinite(estimate).all(axis=-1)
         error = np.where(there, np.inf, np.nan)
         return np.abs(np.divide(true, found, out=error + 1, where=there & (found > 0)) - 1)

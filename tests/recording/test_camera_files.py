@@ -257,6 +257,8 @@ def test_times_are_read_from_the_names_of_images(tmp_path):
         ({"names": ["1.png"] * 40}, {}, "images with the same time"),
         ({"names": [""] * 40}, {"rate": 20}, "expected two images, and names"),
         ({}, {"rate": -1.0}, "rate is -1.0; it must be positive"),
+        ({"model": "PINHOLE 752"}, {"rate": 20}, r"line 2 of cameras\.txt"),
+        ({}, {"rate": 20, "clock": Clock(tick=1e-9)}, "give one of the two"),
     ],
 )
 def test_what_is_no_model_is_refused(tmp_path, settings, how, message):

@@ -81,6 +81,8 @@ def test_poses_of_kitti_have_the_times_of_their_sequence(tmp_path):
         assert (found.rotation.inv() * POSES.rotation).magnitude().max() < 1e-7
     with pytest.raises(ValueError, match=r"have no times; give times='times.txt', or rate=10"):
         read_kitti(file)
+    with pytest.raises(ValueError, match="not both"):
+        read_kitti(file, times, rate=20)
     with pytest.raises(ValueError, match=r"has 20 poses, and .* 3 times"):
         read_kitti(file, written(tmp_path, "0\n0.1\n0.2\n", "few.txt"))
 

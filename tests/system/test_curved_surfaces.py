@@ -129,6 +129,7 @@ def test_beyond_its_field_a_surface_sees_nothing():
             surface.project(outside)
     with pytest.raises(BehindCamera, match="in its field of view"):
         ellipsoid(np.eye(3)).project([0.0, 1.0, -0.1])
+    assert not pinhole().sees([np.nan, 0.0, 1.0])  # nobody sees a point that is not known
 
 
 @pytest.mark.parametrize("surface", SURFACES.values(), ids=SURFACES)

@@ -40,7 +40,7 @@ def test_an_inverse_distance_that_is_not_positive_has_no_finite_point():
 test_points_and_shapes_that_are_none_are_refused = refuses(
     lambda call: call(),
     *((partial(pinhole().project, p), r"\(\.\.\., 3\), all finite") for p in ([1, 2], [[1, 2, 3, 4]], [1, np.nan, 2])),
-    (lambda: pinhole().locate([1, 2]), r"expected \(\.\.\., 3\) for the pinhole"),
+    (lambda: pinhole().locate([1, 2]), r"y1, y2, y3 have the shape .* expected \(\.\.\., 3\)"),
     (lambda: plane().project([1, 2, 3]), "no values for n1, n2, n3"),
     *((partial(plane, normal), "normal vector") for normal in ((0, 0, 0), (1, 0, 0), (1, 2), (1, np.nan, 1))),
     (lambda: plane(outputs=4), "2 or 3 outputs"),

@@ -3,13 +3,20 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
+import sympy as sp
 from examples import BOTH
 from refusals import refuses
 
 from percept_obs import (
+    Camera,
+    Gaussian,
+    NotAffine,
     PerspectiveSystem,
+    PixelCamera,
     Recording,
+    StructureAndMotion,
     affine,
     cli,
     ekf,
@@ -28,11 +35,21 @@ from percept_obs.exercises import derive, individual, reach, students_copy
 from percept_obs.exercises.copies import stub
 from percept_obs.labs import derivation_desk, observer_lab
 from percept_obs.papers import find
-from percept_obs.structure import grid_patch
+from percept_obs.recording import Frames, render
+from percept_obs.recording.imu import Imu
+from percept_obs.recording.plausibility import Unlikely
+from percept_obs.recording.recording import Sighting
+from percept_obs.structure import GivenDepth, PatchDepth, ScaledDepthCamera, grid_patch, seen_as
+from percept_obs.structure.pixels import SignalToNoise
+from percept_obs.structure.scenarios import chwa2019_experiment
 from percept_obs.studies.servoing import servo, starts
+from percept_obs.system.bearings import bearings_only
+from percept_obs.system.inertial import imu
 from percept_obs.validation import needed
 
 SYSTEM, SEEN = PerspectiveSystem(affine(), pinhole()), record(scenarios.ma2005_eq35(), 1)
+HOUSE, LINE, SOME = chwa2019_experiment("IV.A"), bearings_only(), np.random.default_rng(0)
+SAMPLED = affine(np.zeros((3, 3)), np.zeros((11, 3)), np.linspace(0, 1, 11))
 
 test_they_are_refused_with_what_to_do = refuses(
     lambda call: call(),
@@ -57,6 +74,33 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: grid_patch(0.2, 10001), "take fewer along a side"),
     (lambda: derivation_desk(typed={"zz": "a"}), "the part, the step and the line"),
     (lambda: affine([[0, 0, 0]] * 3), "an affine motion"),
+    (lambda: affine(times=[0, 1]), "times are those of samples"),
+    (lambda: SAMPLED.known(math.nan), "asked for from nan"),
+    (lambda: imu(np.zeros(3), np.zeros((5, 3))), r"specific_force .* samples need times="),
+    (lambda: replace(SAMPLED, densities={"q": 1.0}), "no parameters of the affine motion"),
+    (lambda: pinhole().sees([0, 0, 1, 1]), "the points have the shape"),
+    (lambda: pinhole().inverse([0.1, 0.2]), "the coordinates y1, y2, y3 have the shape"),
+    (lambda: pinhole().relative_error(*map(np.ones, ((5, 3), (4, 3), (1, 9)))), "the truth is of shape"),
+    (lambda: replace(pinhole(), values={sp.Symbol("q"): 1.0}), "give its own letters finite numbers"),
+    (lambda: replace(LINE, powers=(1,)), "powers of the bearing alone has 1 entries"),
+    (lambda: replace(BOTH, w=sp.ImmutableMatrix([[1]])), r"w has the shape \(1, 1\)"),
+    (lambda: replace(BOTH, x2=BOTH.x1), "in one of them, once"),
+    (lambda: replace(BOTH, x1=("y1", "y2")), "x1 is the tuple"),
+    (lambda: NotAffine("y1", "y2"), "put it into a list"),
+    (lambda: HOUSE.choice.theta_values(0, HOUSE.motion, [0.0]), "give a positive number"),
+    (lambda: seen_as(SEEN, StructureAndMotion(("v_c1",)), HOUSE.motion), "needs the outputs"),
+    (lambda: GivenDepth().depths(np.ones(2), np.ones(3), np.ones(2), SOME), "the exact depths have shape"),
+    (lambda: PatchDepth(np.zeros((4, 3))), "fewer than four points"),
+    (lambda: ScaledDepthCamera(noise=Gaussian(1.0), ratio=SignalToNoise(20.0)), "a noise or a ratio"),
+    (lambda: Gaussian(1e300), "at most 1e150"),
+    (lambda: Imu(turning_noise=-1), "turning_noise is -1"),
+    (lambda: Camera().drawn([0], (-1, 2)), "sizes from 0 on"),
+    (lambda: Camera().samples(HOUSE, np.zeros(2), np.zeros((5, 6)), SOME), "5 rows for 2 times"),
+    (lambda: replace(SEEN, outputs=np.full((101, 2), math.nan)), "of one point one at least is needed"),
+    (lambda: Sighting("a", 0, 1), "a whole number"),
+    (lambda: render(record(HOUSE, 0.1)), "image coordinates of one point"),
+    (lambda: Frames([np.full((2, 2), 1000.0)], [0.0], (-1, 1, -1, 1)), "expected 0 to 1"),
+    (lambda: Frames(5, [0.0], (-1, 1, -1, 1)), "a sequence of files or arrays"),
 )
 
 
@@ -87,6 +131,16 @@ def test_a_row_with_too_few_cells_is_no_lost_sample(tmp_path):
     (tmp_path / "track.csv").write_text("time,y1,y2\n0,1,2\n1,2\n")
     with pytest.raises(ValueError, match="2 cells in line 3, and 3 names"):
         Recording.from_csv(tmp_path / "track.csv", SEEN.motion)
+
+
+def test_the_content_of_a_file_is_no_path_to_it():
+    with pytest.raises(FileNotFoundError, match="'0 0 0 0 0 0 0 1', where there is no file"):
+        read_tum("0 0 0 0 0 0 0 1\n" * 300)
+
+
+def test_a_camera_of_another_size_is_suspicious():
+    with pytest.warns(Unlikely, match="are both of one size"):
+        PixelCamera((500, 500), (3200, 2400), (640, 480))
 
 
 def test_a_setting_is_no_attribute_of_a_lab():

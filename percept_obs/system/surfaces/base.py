@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags, definitions, vectorised
 from percept_obs.system.view import OnePoint
-from percept_obs.validation import checked, expression, expressions, set_fields
+from percept_obs.validation import checked, expression, expressions, numbers, set_fields
 
 X, Y, Z = POINT = sp.symbols("X Y Z", real=True)
 
@@ -109,6 +109,11 @@ class ImagingSurface(OnePoint):
                 f"the surface {self.name!r} has {len(self.image)} image coordinates and a ray of "
                 f"{len(self.ray)} entries; it needs at least one image coordinate and a ray of three entries"
             )
+        for symbol, value in self.values.items():
+            if symbol not in (*self.parameters, *self.radii) or not np.isfinite(value):
+                raise ValueError(
+                    f"the surface {self.name!r} has {symbol} = {value}; give its own letters finite numbers"
+                )
         self._refuse_a_wrong_ray()
 
     def __hash__(self) -> int:
@@ -139,7 +144,7 @@ class ImagingSurface(OnePoint):
     @cached_property
     def parameters(self) -> tuple[sp.Symbol, ...]:
         """Symbols that shape the surface, by name."""
-        used = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray)))
+        used = set().union(*(e.free_symbols for e in (*self.image, self.distance, *self.ray, *self.region)))
         return tuple(sorted(used - set(POINT) - set(self.image_coordinates), key=lambda s: s.name))
 
     @property
@@ -194,9 +199,10 @@ class ImagingSurface(OnePoint):
         return np.stack([*self._evaluate(POINT, self.image, points), 1 / distance], axis=-1)
 
     def sees(self, points: ArrayLike) -> Flags:
-        """Flags, shape (...), of the points, shape (..., 3), where each of `bounds` is positive."""
-        points = np.asarray(points, dtype=float)
-        return np.asarray(np.all([bound > 0 for bound in self._evaluate(POINT, self.bounds, points)], axis=0))
+        """Flags, shape (...), of the points, shape (..., 3), that are finite and where each of `bounds` is positive."""
+        points = numbers(points, "the points", 3)
+        bounds = [bound > 0 for bound in self._evaluate(POINT, self.bounds, points)]
+        return np.asarray(np.all([*bounds, np.isfinite(points).all(axis=-1)], axis=0))
 
     @property
     def bounds(self) -> tuple[sp.Expr, ...]:
@@ -205,11 +211,11 @@ class ImagingSurface(OnePoint):
 
     def distances(self, points: ArrayLike) -> Array:
         """Depths or ranges in metres, shape (...), of points of shape (..., 3); not positive behind the camera."""
-        return self._evaluate(POINT, (self.distance,), np.asarray(points, dtype=float))[0]
+        return self._evaluate(POINT, (self.distance,), numbers(points, "the points", 3))[0]
 
     def inverse(self, coordinates: ArrayLike) -> Array:
         """Inverse distances in 1/m, shape (...): the last of the coordinates, of shape (..., n)."""
-        return np.asarray(coordinates, dtype=float)[..., -1]
+        return self._all(coordinates)[..., -1]
 
     def locate(self, coordinates: ArrayLike) -> Array:
         """Return points of space in metres, shape (..., 3), from their coordinates: the ray over the inverse distance.
@@ -227,20 +233,16 @@ class ImagingSurface(OnePoint):
         ValueError
             If the shape is wrong, or the surface has symbols without values.
         """
-        coordinates = np.asarray(coordinates, dtype=float)
-        if coordinates.shape[-1:] != (len(self.coordinates),):
-            raise ValueError(
-                f"coordinates have shape {coordinates.shape}; expected (..., {len(self.coordinates)}) for the "
-                f"{self.name}: {', '.join(map(str, self.coordinates))}"
-            )
+        coordinates = self._all(coordinates)
         ray = self.along(coordinates[..., :-1])
         inverse = coordinates[..., -1:]
         return np.divide(ray, inverse, out=np.full_like(ray, np.inf), where=inverse > 0)
 
     def along(self, image: ArrayLike) -> Array:
         """Points at the distance 1, shape (..., 3), along the rays of image points of shape (..., m); NaN for none."""
+        image = numbers(image, "the image points", len(self.image_coordinates))
         with np.errstate(invalid="ignore"):  # no point of space has such an image
-            return np.stack(self._evaluate(self.image_coordinates, self.ray, np.asarray(image, dtype=float)), axis=-1)
+            return np.stack(self._evaluate(self.image_coordinates, self.ray, image), axis=-1)
 
     @cached_property
     def field_of_view(self) -> float:
