@@ -89,8 +89,6 @@ class Motion:
         n = self.b.rows
         if (self.A.shape, self.b.shape) != ((n, n), (n, 1)):
             raise ValueError(f"A has the shape {self.A.shape} and b {self.b.shape}; expected (n, n) and (n, 1)")
-        if strange := {*self.densities} - {symbol.name for symbol in self.parameters}:
-            raise ValueError(f"densities are of {', '.join(strange)}, no parameters of the {self.name} motion")
 
     @cached_property
     def lengths(self) -> tuple[int, ...]:

@@ -77,7 +77,6 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: affine(times=[0, 1]), "times are those of samples"),
     (lambda: SAMPLED.known(math.nan), "asked for from nan"),
     (lambda: imu(np.zeros(3), np.zeros((5, 3))), r"specific_force .* samples need times="),
-    (lambda: replace(SAMPLED, densities={"q": 1.0}), "no parameters of the affine motion"),
     (lambda: pinhole().sees([0, 0, 1, 1]), "the points have the shape"),
     (lambda: pinhole().inverse([0.1, 0.2]), "the coordinates y1, y2, y3 have the shape"),
     (lambda: pinhole().relative_error(*map(np.ones, ((5, 3), (4, 3), (1, 9)))), "the truth is of shape"),
