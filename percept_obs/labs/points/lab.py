@@ -12,7 +12,7 @@ import sympy as sp
 
 from percept_obs.compile import vectorised
 from percept_obs.labs.points.analysis import in_words
-from percept_obs.labs.points.settings import DRIVE, LONGEST, LOOKS, SCHEMA
+from percept_obs.labs.points.settings import DRIVE, IDLE, LONGEST, LOOKS, SCHEMA
 from percept_obs.labs.points.texts import (
     BLOCKS,
     STATES,
@@ -82,7 +82,7 @@ class PointsLab(Lab):
     schema = SCHEMA
     title = "Many points of one state"
     blocks = BLOCKS
-    looks = LOOKS
+    looks, idle = LOOKS, IDLE
 
     @checked
     def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:
@@ -181,6 +181,7 @@ class PointsLab(Lab):
 
     def recorded(self, settings: Settings) -> Recording:
         """Recording of the settings' points."""
+        settings = self.check(settings)
         form = form_of_settings(settings, self._form)
         state = state_of(form, settings["points"]).tolist()
         scenario = PointsScenario("from the lab", form, state, settings["duration"])
@@ -194,6 +195,7 @@ class PointsLab(Lab):
 
     def runs(self, settings: Settings) -> PointsRun:
         """The run of settings."""
+        settings = self.check(settings)
         recording = self.recorded(settings)
         form = points_form(recording)
         assert recording.truth is not None

@@ -20,7 +20,7 @@ from percept_obs.labs.shared.schema import Schema, Settings
 from percept_obs.labs.shared.typed_motion import Typed, read_motion
 from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
-from percept_obs.labs.structure.settings import DRIVE, LOOKS, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
+from percept_obs.labs.structure.settings import DRIVE, IDLE, LOOKS, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.user_defined import Given, opening_of, refuse_samples, zero_in
 from percept_obs.observers import Observer
@@ -90,12 +90,11 @@ class StructureLab(Lab):
     schema = SCHEMA
     title = "Structure and motion"
     blocks = BLOCKS
-    looks = LOOKS
+    looks, idle = LOOKS, IDLE
 
     def __init__(self, form: Given | None = None, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
         plain = form is None and observers is None and not set(settings) - set(self.looks)
         found, self._samples = (DRIVE if plain else {}, None) if form is None else opening_of(form)
-        settings = found | settings
         ours = {name: make for name, (_, make) in OBSERVERS.items()}
         asked, self._user_observers = (None, {}) if observers is None else read_observers(observers, ours)
         self._makers = {**ours, **self._user_observers}
@@ -114,7 +113,7 @@ class StructureLab(Lab):
         super().__init__(
             "structure_lab",
             settings,
-            opening,
+            opening | found,
             opening,
             texts=with_texts("structure_lab", self._added),
             own={name: make.for_the_page() for name, make in self._user_observers.items()},
@@ -128,6 +127,7 @@ class StructureLab(Lab):
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
+        settings = self.check(settings)
         unknowns = unknowns_of(settings, self._samples)
         recording = _recorded(settings, unknowns, _used(settings, self._samples))
         start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
