@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from os import PathLike
 from typing import Any
 
@@ -14,10 +13,9 @@ from percept_obs.labs.desk.settings import EXAMPLE, LOOKS, SCHEMA
 from percept_obs.labs.desk.sheets import PARTS, Sheet, sheet_of
 from percept_obs.labs.desk.systems import system_of, system_of_student
 from percept_obs.labs.desk.texts import sheet_for_the_page, sheet_name
-from percept_obs.labs.shared.idle import Idle, only
 from percept_obs.labs.shared.lab import Lab
 from percept_obs.labs.shared.printed import part
-from percept_obs.labs.shared.schema import Settings
+from percept_obs.labs.shared.schema import Settings, only
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.validation import checked
 
@@ -50,7 +48,6 @@ class DerivationDesk(Lab):
 
     schema = SCHEMA
     looks = LOOKS
-    idle: Idle = dict.fromkeys(("motion", "surface", "outputs"), only("student", ""))
     title = "The derivation desk"
     sheets = traitlets.Dict(help="Sheets of a system that the package does not print, by their names.").tag(sync=True)
 
@@ -58,6 +55,7 @@ class DerivationDesk(Lab):
     def __init__(self, system: PerspectiveSystem | None = None, /, **settings: Any) -> None:
         self._given = system
         opening, given = SCHEMA.opening, None
+        self.idle = dict.fromkeys(("motion", "surface", "outputs"), only("student", ""))
         if system is None and set(settings) <= set(self.looks):
             opening |= EXAMPLE
         if system is not None:
@@ -65,30 +63,20 @@ class DerivationDesk(Lab):
             given = {"outputs": [list(names) for names in system.output_choices]}
             opening["outputs"] = given["outputs"][0]
         super().__init__("desk_lab", settings, opening, opening, given=given)
-        if self.schema.keys() - settings.keys():  # lines of another system stay when settings are read back
-            self._refuse_absent([*settings.get("typed", {}), *settings.get("hints", {})])
-        self.analysis = self.analyse()
-
-    def _refuse_absent(self, places: Iterable[str]) -> None:
-        """Raise a ValueError for a place that the sheets do not have."""
-        for place in places:
-            part, number, *line = place.split(" ", 2)
+        for key in settings.get("typed", ()) if self.schema.keys() - settings.keys() else ():  # else those read back
+            part, number, line = key.split(" ", 2)
             steps = sheet_of(*self.system(), self.settings["observer"], part).derivation
-            lines = list(steps[int(number) - 1].values) if int(number) <= len(steps) else []
-            if not lines or set(line) - set(lines):
-                told = f"step {number} has {', '.join(lines)}" if lines else f"there are {len(steps)} steps"
-                raise ValueError(f"there is no place {place!r}: {told}")
+            there = [name for step in steps[int(number) - 1 : int(number)] for name in step.values]
+            if line not in there:
+                raise ValueError(f"typed has {key!r}; this step has {', '.join(there) or 'no lines'}")
+        self.analysis = self.analyse()
 
     def refuse(self, settings: Settings) -> None:
         """Raise a ValueError for settings that do not go together."""
         settings["outputs"].sort()
-        place = rf"({'|'.join(PARTS)}) [1-9]\d?"
         for key in settings["typed"]:
-            if not re.fullmatch(rf"{place} \S.*", key):
+            if not re.fullmatch(rf"({'|'.join(PARTS)}) [1-9]\d? \S.*", key):
                 raise ValueError(f'typed has {key!r}; give the part, the step and the line, such as "rate 6 y1\'"')
-        for key in settings["hints"]:
-            if not re.fullmatch(place, key):
-                raise ValueError(f'hints has {key!r}; give the part and the step, such as "rate 6"')
         surface = settings["surface"]
         choices = self._given.output_choices if self._given else part("desk_lab")["surfaces"][surface]
         if settings["outputs"] not in [list(names) for names in choices]:

@@ -27,10 +27,9 @@ from percept_obs.labs.observer.tracks import (
     with_affine_motions,
 )
 from percept_obs.labs.shared.common_settings import window_in
-from percept_obs.labs.shared.idle import WINDOW, only
 from percept_obs.labs.shared.lab import NOISES, OF_ONE_POINT, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.samples import table_for_the_page
-from percept_obs.labs.shared.schema import Choice, Settings
+from percept_obs.labs.shared.schema import Choice, Settings, in_run, only
 from percept_obs.labs.shared.surfaces import SHAPES, numbers_of, shaped_surface
 from percept_obs.labs.shared.typed_motion import read_motion
 from percept_obs.labs.shared.user_observers import read_observers
@@ -141,10 +140,10 @@ class ObserverLab(Lab):
         known = {n: {"motion": typed_text(s.motion), **as_settings(s, on[n])} for n, s in scenes.items()}
         self._recordings = with_affine_motions(tracks, {n: self._registry.surfaces[on[n]] for n in tracks})
         self.schema = schema_of(self._registry, {**known, **tracks})
-        simulated, moved = only("scenario", *scenes), only("scenario", *(n for n in scenes if n not in self._tables))
-        self.idle = {"normal": only("surface", "plane"), "xi": only("surface", "unified"), "window": WINDOW}
-        self.idle |= dict.fromkeys(("X0", "duration", "noise", "seed", "period", "dropout"), simulated)
-        self.idle |= dict.fromkeys("Ab", moved)
+        of_camera = dict.fromkeys(("X0", "duration", "noise", "seed", "period", "dropout"), only("scenario", *scenes))
+        of_motion = dict.fromkeys("Ab", only("scenario", *(name for name in scenes if name not in self._tables)))
+        shaped = {"normal": only("surface", "plane"), "xi": only("surface", "unified")}
+        self.idle = of_camera | of_motion | shaped | {"window": in_run()}
         opening = str(self.schema["scenario"].read("scenario", scenario))
         motions = list(dict.fromkeys(recording.motion for recording in self._recordings.values()))
         shots = list(dict.fromkeys(films.values()))
@@ -248,8 +247,7 @@ class ObserverLab(Lab):
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
-        settings = self.check(settings)
-        return self._followed(self.recorded(settings), settings)
+        return self._followed(self.recorded(settings := self.check(settings)), settings)
 
     def _followed(self, recording: Recording, settings: Settings) -> dict[str, Run]:
         chosen, other = settings["start"], settings["believed"]

@@ -3,7 +3,6 @@
 from percept_obs.labs.points.texts import MOST_POINTS, STATES
 from percept_obs.labs.points.typed_weight import MOST_OF_P
 from percept_obs.labs.shared.common_settings import AT_LEAST, DROPOUT, KEPT, SEED, noise
-from percept_obs.labs.shared.idle import WINDOW, Idle, only, within_run
 from percept_obs.labs.shared.schema import Choice, Number, Optional, Row, Schema, Settings, Several, Text, vector
 from percept_obs.labs.shared.typed_motion import typed_setting
 from percept_obs.labs.shared.view import view_of
@@ -87,15 +86,6 @@ SCHEMA = Schema(
     ),
     kept=KEPT,
 )
-
-IDLE: Idle = {
-    **dict.fromkeys(("turning", "input", "camera_velocity"), only("state", *STATES)),
-    **{"spin": only("state", *(state for state in STATES if state != "independent")), "window": WINDOW},
-    **{"P": only("weight", "typed"), "P0": only("weight", "lyapunov", "riccati"), "final": only("weight", "scheduled")},
-    **{"decrease": only("weight", "lyapunov"), "forgetting": only("weight", "riccati")},
-    **{"depth": only("start", "rays"), "error": only("start", "error")},
-    "hidden": within_run(lambda whole: max(times[0] if times else 0 for times in whole["hidden"])),
-}
 
 DRIVE: Settings = {
     "points": [[1.3, -3.1, 8.0], [-2.3, -3.1, 7.1], [1.0, -3.1, 4.3]],

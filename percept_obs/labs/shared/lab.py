@@ -22,7 +22,6 @@ from IPython.display import display
 from IPython.utils.capture import capture_output
 
 from percept_obs.compile import Array
-from percept_obs.labs.shared.idle import Idle
 from percept_obs.labs.shared.printed import FRONT, file_of
 from percept_obs.labs.shared.saved import ended, page_of
 from percept_obs.labs.shared.schema import Schema, Settings
@@ -122,8 +121,8 @@ class Lab(anywidget.AnyWidget):
     title = "A lab"
     blocks: Blocks = MappingProxyType({})
     """Vectors and matrices that may vary over time, by their letters."""
-    idle: Idle = MappingProxyType({})
-    """Settings that do nothing with some others: then they are refused, unless all settings are given, as read back."""
+    idle: Mapping[str, Callable[[Settings], str]] = MappingProxyType({})
+    """Why settings do nothing with others, or empty; those are refused, unless all are given, as when read back."""
     looks: Schema = Schema()
     """Schema of the view, which no run depends on: the drawer's open group, charts, the part of the time."""
     from_the_page: tuple[str, ...] = ("view", "settings", "summary")
@@ -179,7 +178,7 @@ class Lab(anywidget.AnyWidget):
         whole = self.schema.read(settings, self._opening)
         self.refuse(whole)
         for name, reason in self.idle.items() if self.schema.keys() - settings.keys() else ():
-            if name in settings and (why := reason(whole)):
+            if name in settings and whole[name] and (why := reason(whole)):
                 raise ValueError(f"{name} is {settings[name]!r}, but {why}; change one of the two, or leave {name} out")
         if whole.get("kept") is not None:
             whole["kept"] = self.check({**whole["kept"], "kept": None})

@@ -16,11 +16,11 @@ from percept_obs.labs.shared.common_settings import gains, offering, own_gains
 from percept_obs.labs.shared.lab import NOISES, OF_ONE_POINT, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import samples_for_the_page
-from percept_obs.labs.shared.schema import Schema, Settings
+from percept_obs.labs.shared.schema import Schema, Settings, only
 from percept_obs.labs.shared.typed_motion import Typed, read_motion
 from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
-from percept_obs.labs.structure.settings import DRIVE, IDLE, LOOKS, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
+from percept_obs.labs.structure.settings import DRIVE, LOOKS, SCHEMA, STANDARD, STANDARD_GAINS, VELOCITIES
 from percept_obs.labs.structure.texts import BLOCKS, LARGEST, OBSERVERS, PHASES, general_form, observer_of, swinging
 from percept_obs.labs.structure.user_defined import Given, opening_of, refuse_samples, zero_in
 from percept_obs.observers import Observer
@@ -90,9 +90,14 @@ class StructureLab(Lab):
     schema = SCHEMA
     title = "Structure and motion"
     blocks = BLOCKS
-    looks, idle = LOOKS, IDLE
+    looks = LOOKS
 
     def __init__(self, form: Given | None = None, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
+        self.idle = {
+            **dict.fromkeys(("v_c", "v_p", "v_c_swing", "v_p_swing", "w_c"), only("velocities", "set")),
+            "rate": lambda whole: "" if any(whole["v_c_swing"] + whole["v_p_swing"]) else "no velocity swings",
+            "earlier": lambda whole: "d_s is unknown" if "d_s" in whole["unknown"] else "",
+        }
         plain = form is None and observers is None and not set(settings) - set(self.looks)
         found, self._samples = (DRIVE if plain else {}, None) if form is None else opening_of(form)
         ours = {name: make for name, (_, make) in OBSERVERS.items()}
@@ -127,8 +132,7 @@ class StructureLab(Lab):
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
-        settings = self.check(settings)
-        unknowns = unknowns_of(settings, self._samples)
+        unknowns = unknowns_of(settings := self.check(settings), self._samples)
         recording = _recorded(settings, unknowns, _used(settings, self._samples))
         start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
         observers = {

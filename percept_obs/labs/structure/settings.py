@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 from percept_obs.labs.shared.common_settings import KEPT, SEED, noise
-from percept_obs.labs.shared.idle import Idle, only
 from percept_obs.labs.shared.schema import Choice, Flag, Group, Names, Number, Row, Schema, Settings, vector
 from percept_obs.labs.shared.typed_motion import typed_setting
 from percept_obs.labs.shared.view import view_of
@@ -77,12 +76,6 @@ SCHEMA = Schema(
     tolerance=Number(TOLERANCE, 1e-6, 10, (1e-4, 1), about="the relative error that counts as settled", topic="run"),
     kept=KEPT,
 )
-
-IDLE: Idle = {
-    **dict.fromkeys(("v_c", "v_p", "v_c_swing", "v_p_swing", "w_c"), only("velocities", "set")),
-    "rate": lambda whole: "" if any(whole["v_c_swing"] + whole["v_p_swing"]) else "v_c_swing and v_p_swing are 0",
-    "earlier": lambda whole: "d_s is unknown" if whole["earlier"] and "d_s" in whole["unknown"] else "",
-}
 
 STANDARD: Settings = SCHEMA.opening | case_of(1)
 """Settings of a lab that is given some."""
