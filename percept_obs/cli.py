@@ -13,17 +13,20 @@ from typing import Any
 
 from percept_obs.exercises import COPIES, GRADERS, individual
 from percept_obs.exercises.models import notebooks
-from percept_obs.validation import write_whole
+from percept_obs.validation import checked, write_whole
 
 FIRST_NOTEBOOK = "00_start.ipynb"
 
 
-def copy_notebooks(directory: Path, readers: str = "students", student: str = "") -> None:
+@checked
+def copy_notebooks(directory: str | Path, readers: str = "students", student: str | None = None) -> None:
     """Copy the notebooks for their readers into a directory, which may be new, and leave whatever is there as it is."""
-    shipped = {name: individual(each, student) if student else each for name, each in notebooks().items()}
-    directory.mkdir(parents=True, exist_ok=True)
+    if readers not in {**COPIES, **GRADERS}:
+        raise ValueError(f"readers is {readers!r}; there are {', '.join((*COPIES, *GRADERS))}")
+    shipped = {name: each if student is None else individual(each, student) for name, each in notebooks().items()}
+    Path(directory).mkdir(parents=True, exist_ok=True)
     for name, notebook in shipped.items():
-        target = directory / name
+        target = Path(directory) / name
         if target.exists():
             print(f"kept    {target}")
         else:
@@ -81,6 +84,8 @@ def exam(options: argparse.Namespace) -> int:
 
     if not options.seed.isalnum():
         raise _Mistake(f"{options.seed!r} cannot be part of a file's name; name a version with letters and digits")
+    _refuse_a_file(options.directory)
+    options.directory.mkdir(parents=True, exist_ok=True)
     for name, text in zip(("questions", "solutions"), exam(options.seed), strict=True):
         target = options.directory / f"exam_{options.seed}_{name}.md"
         write_whole(target, text.encode())
@@ -216,6 +221,7 @@ class _Mistake(ValueError):
         self.code = code
 
 
+@checked
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code: 0 for success, 1 for a failure, 2 for a wrong request."""
     parser = argparse.ArgumentParser(prog="percept-obs", description="Observers for perspective dynamic systems.")
@@ -237,9 +243,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add("directory", nargs="?", type=Path, default=Path("percept_obs_notebooks"), metavar="DIR", help=copies)
     tools = f"{readers['help']}; nbgrader and otter get the sources of their assignments"
     add("--for", **readers | {"choices": (*COPIES, *GRADERS), "help": tools})
-    add(
-        "--student", default="", metavar="NAME", help="make the exercises a student's own: numbers follow from the name"
-    )
+    add("--student", metavar="NAME", help="make the exercises a student's own: numbers follow from the name")
     add("--copy-only", action="store_true", help="copy the notebooks, do not open them")
     add("--no-browser", action="store_true", help="start JupyterLab without a browser")
 

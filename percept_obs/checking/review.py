@@ -22,6 +22,7 @@ from percept_obs.checking.points import key
 from percept_obs.checking.reading import words_of
 from percept_obs.checking.target import Target
 from percept_obs.checking.targets import target_of
+from percept_obs.validation import checked
 
 MARKS = {
     Verdict.RIGHT: "✓",
@@ -37,6 +38,7 @@ DECIDING = 0.55 * SECONDS
 HINTS = ("which line", "which term", "which slip, and in which step")
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Review:
     """The result of a check; it shows itself in a notebook, with as many hints as are asked for.

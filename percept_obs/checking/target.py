@@ -21,7 +21,7 @@ from percept_obs.observers.parts import hats
 from percept_obs.system.derivation import Derivation, Step
 from percept_obs.system.motion import rigid
 from percept_obs.system.surfaces import plane
-from percept_obs.validation import travels
+from percept_obs.validation import checked, travels
 
 
 @cache
@@ -232,7 +232,8 @@ class Target:
         put = (replace(r, formula=on_sides(lambda side: side.xreplace(own), r.formula)) for r in lines)
         return Text(tuple(put), (*found.definitions, *more))
 
-    def own(self, formula: sp.Basic) -> sp.Basic:
+    @checked
+    def own(self, formula: sp.Basic | sp.MatrixBase) -> sp.Basic:
         """Return a formula of sympy in the target's own letters, matched by name."""
         formula = explicit(in_entries(formula, self.matrices))
         own = {s: self.letters.get(key(s.name), s) for s in formula.free_symbols}

@@ -27,6 +27,7 @@ from percept_obs.system.forms import CanonicalForm, PartitionedSystem
 from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT, SURFACES
+from percept_obs.validation.arguments import described
 
 
 @singledispatch
@@ -65,10 +66,10 @@ def target_of(thing: Any) -> Target:
         return _joined(map(target_of, thing))
     if isinstance(getattr(thing, "target", None), Target):
         return thing.target
-    if hasattr(thing, "derivation") and callable(thing.derivation):
+    if hasattr(thing, "derivation") and callable(thing.derivation) and not isinstance(thing, type):
         return target_of(thing.derivation())
     raise ValueError(
-        f"nothing can be compared with a {type(thing).__name__}; give a system, a form, an observer, a step of a "
+        f"nothing can be compared with {described(thing)}; give a system, a form, an observer, a step of a "
         "derivation, an observability condition, or a formula"
     )
 
@@ -81,7 +82,9 @@ def _called(name: str, target: Target) -> Target:
 
 
 def _joined(targets: Iterable[Target]) -> Target:
-    return Target(tuple(line for part in targets for line in part.lines))
+    if not (lines := tuple(line for part in targets for line in part.lines)):
+        raise ValueError("nothing can be compared, for there is no formula; give one, such as y1' = b1")
+    return Target(lines)
 
 
 def _rates(symbols: Sequence[sp.Symbol], values: Iterable[sp.Expr]) -> tuple[Line, ...]:

@@ -9,9 +9,11 @@ from types import EllipsisType, MappingProxyType
 from typing import Any
 
 from percept_obs.checking import Review, Target, check, target_of
+from percept_obs.validation import checked, refuse_kind
 from percept_obs.validation.kinds import is_real
 
 
+@checked
 @dataclass(frozen=True)
 class Attempt:
     """Reply to an answer; it shows itself in a notebook.
@@ -54,6 +56,7 @@ REFUSALS = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 """Errors that an answer of another kind than is asked for raises where it is used."""
 
 
+@checked
 def derive(
     mine: Any, target: Any, *asked: str, letters: Mapping[str, float] = MappingProxyType({})
 ) -> Attempt | Review:
@@ -126,7 +129,8 @@ def _with_factors(target: Target, factors: Mapping[str, float]) -> Target:
     return replace(target, lines=lines, derivation=None, elsewhere=None, others={})
 
 
-def choose(mine: str | EllipsisType, found: str, **options: bool) -> Attempt:
+@checked
+def choose(mine: Any, found: str, **options: bool) -> Attempt:
     """Compare a prediction with the result of an experiment.
 
     Parameters
@@ -170,6 +174,7 @@ def choose(mine: str | EllipsisType, found: str, **options: bool) -> Attempt:
     return Attempt(False, f"You said {choice}, the experiment says {right[0]}. {found}")
 
 
+@checked
 def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float) -> Attempt:
     """Judge an answer, such as a set of gains, by the numbers of an experiment.
 
@@ -210,6 +215,7 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
     except REFUSALS as error:
         quoted = "; a number stands without quotes" if isinstance(mine, str) else ""
         return Attempt(None, f"The experiment cannot run with {mine!r}{quoted}. It says: {error}")
+    refuse_kind("reach", f"what {getattr(judge, '__name__', 'judge')} returns", numbers, Mapping[str, Any])
     if missing := [name for name in sorted(most) if not is_real(numbers.get(name))]:
         raise ValueError(f"the experiment gives no number {', '.join(missing)}; it gives {', '.join(numbers)}")
     right = all(numbers[name] <= limit for name, limit in most.items())

@@ -12,6 +12,7 @@ from hashlib import sha256
 from typing import Any
 
 from percept_obs.exercises.models import cells_of
+from percept_obs.validation import checked
 
 OURS = "percept_obs"
 """Key of what a cell or a notebook says to this package in its metadata."""
@@ -43,6 +44,7 @@ def with_numbers(text: str, rules: Mapping[str, Sequence[str]], student: str, wh
     return text
 
 
+@checked
 def individual(notebook: Mapping[str, Any], student: str) -> dict[str, Any]:
     """Return a notebook whose exercises are a student's own: tasks, solutions and checks.
 

@@ -9,10 +9,10 @@ from functools import cache
 from hashlib import sha256
 from importlib import resources
 from pathlib import Path
-from types import EllipsisType
 from typing import Any
 
 from percept_obs.exercises.answers import Attempt
+from percept_obs.validation import checked
 
 _INSTALLED = resources.files("percept_obs") / "notebooks"
 FOLDER = _INSTALLED if _INSTALLED.is_dir() else Path(__file__).parents[2] / "notebooks"
@@ -51,7 +51,8 @@ def key_of(answer: str) -> str:
     return sha256(answer.encode()).hexdigest()[:8]
 
 
-def model_answer(mine: str | EllipsisType, key: str) -> Attempt:
+@checked
+def model_answer(mine: Any, key: str) -> Attempt:
     """Show a model answer, to be compared with one's own.
 
     Parameters

@@ -6,7 +6,7 @@ import ast
 import sys
 from typing import Any
 
-from percept_obs.validation import missing
+from percept_obs.validation import checked, missing
 
 
 class NotInstalled(ModuleNotFoundError):
@@ -16,6 +16,7 @@ class NotInstalled(ModuleNotFoundError):
         return [str(self)]
 
 
+@checked
 def needs(*modules: str) -> None:
     """End a notebook with one sentence if it lacks a module: later cells repeat the sentence, and do not run.
 

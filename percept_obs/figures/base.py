@@ -218,6 +218,8 @@ def recording_and_run(data: Run | Recording) -> tuple[Recording, Run | None]:
 def runs_of_one_point(runs: Run | Sequence[Run]) -> list[Run]:
     """Return runs as a list; their times, surfaces and truths must be equal."""
     found = require_several(runs, Run, "track()")
+    if any(run.recording.view.point_shape for run in found):
+        raise ValueError("a run is of several points, and the figure of one; draw image_plane, scene or error_norm")
     first = found[0].recording
     for number, run in enumerate(found[1:], 2):
         other = run.recording

@@ -56,7 +56,7 @@ def image_plane(data: Run | Recording, threshold: float = 0.1, ax: Axes | None =
         raise ValueError(f"the threshold is {threshold}; it must be positive")
     if len(view.image_coordinates) != 2:
         raise ValueError(f"the {view.name} has {len(view.image_coordinates)} image coordinates; an image plane has two")
-    if not recording.seen.any() and view.point_shape:
+    if not recording.seen.any() and (view.point_shape or recording.truth is None):
         raise ValueError("no point is seen in two image coordinates; record some points in front of the camera")
     y1, y2 = (describe.label(symbol.name, view) for symbol in view.image_coordinates)
     own, ax = ax is None, canvas(ax, 5.2)

@@ -241,8 +241,8 @@ def depth_errors(errors: Mapping[str, ArrayLike], after: float, ax: Axes | None 
     percept_obs.structure.PatchDepth : One way of estimating.
     """
     known = {name: np.asarray(values, dtype=float).ravel() for name, values in errors.items()}
-    if not known or not all(len(values) and not np.isnan(values).any() for values in known.values()):
-        raise ValueError("each name needs relative errors, of at least one sighting and without NaN")
+    if not known or not all(len(values) and (values >= 0).all() for values in known.values()):
+        raise ValueError("each name needs relative errors, of at least one sighting, from 0 on and without NaN")
     ax = canvas(ax, 1.0 + 0.5 * len(known))
     ax.grid(False, axis="y")
     seen = describe.finite(np.concatenate(list(known.values())))

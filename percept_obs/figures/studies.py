@@ -18,7 +18,7 @@ from percept_obs.studies.diagnosis import Diagnosis
 from percept_obs.studies.diagnosis.causes import CAUSES
 from percept_obs.studies.sensitivity import SHARE, Sensitivity
 from percept_obs.studies.servoing import GOAL, Servoing
-from percept_obs.validation import Kind
+from percept_obs.validation import Kind, are_numbers
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -328,6 +328,8 @@ def settings_map(values: Values, ax: Axes | None = None) -> Drawing:
         raise ValueError(f"a map needs two dimensions; there are {values.ndim}: {', '.join(values.dims) or 'none'}")
     up, right = values.dims
     ax = canvas(ax, 3.6)
+    if other := [each.name for each in (values, values[up], values[right]) if not are_numbers(each.values)]:
+        raise ValueError(f"{other[0]} holds something else than real numbers; a map needs numbers over numbers")
     numbers = np.where(np.isfinite(values.values), values.values, np.nan)
     known = np.isfinite(numbers)
     ax.set_facecolor(look.LIGHT)

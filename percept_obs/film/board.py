@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from percept_obs.compile import Array, Indices
 from percept_obs.recording.text_table import PathLike
-from percept_obs.validation import checked, needed
+from percept_obs.validation import Kind, checked, limit, needed
 
 DICTIONARY = "DICT_4X4_50"
 """OpenCV's markers of 4 x 4 cells, the largest cells that there are."""
@@ -26,6 +26,10 @@ FAMILIES = (
 
 FEWEST_MARKERS = 4
 """Fewest markers of a dictionary in a picture that mean a board, and no accident."""
+
+GREY = Kind(
+    "grey values of 8 bits, shape (h, w)", lambda v: isinstance(v, np.ndarray) and (v.dtype, v.ndim) == ("u1", 2)
+)
 
 WINDOW = 0.7
 """Half of the window in which a corner is looked for, over the white between a square's edge and its marker."""
@@ -46,7 +50,7 @@ class Board:
     Raises
     ------
     ValueError
-        If there are too few squares or too many for the markers, or a marker does not fit into its square.
+        If squares are too few, too many for the markers or over 1 m, or a marker does not fit into its square.
 
     See Also
     --------
@@ -69,17 +73,19 @@ class Board:
             raise ValueError(
                 f"the board has {self.columns} x {self.rows} squares; it needs 3 x 3 at least, and at most 100 squares"
             )
-        if not 0 < self.marker < self.square < np.inf:
+        if not 0 < self.marker < self.square <= 1:
             raise ValueError(
-                f"the marker's side is {self.marker} m and the square's {self.square} m; the marker must be smaller"
+                f"marker {self.marker} m, square {self.square} m: the marker must be smaller, the square 1 m at most"
             )
 
     @classmethod
     def from_json(cls, path: PathLike) -> Any:
         """Return the board in a file that `percept-obs board` wrote."""
         try:
-            fields = json.loads(Path(path).read_text("utf-8"))
-            return cls(**fields)
+            given = json.loads(Path(path).read_text("utf-8"))
+            if missing := [each.name for each in fields(cls) if each.name not in given]:
+                raise ValueError(f"{', '.join(missing)} are not in it")
+            return cls(**given)
         except (ValueError, TypeError) as error:
             raise ValueError(f"'{path}' is no file of a board, {error}; write one with: percept-obs board") from None
 
@@ -139,9 +145,12 @@ class Board:
 
     def picture(self, pixels: int = 40) -> Any:
         """Return the board in grey values, shape (h, w), with so many pixels a square, a multiple of 4."""
+        limit(self.columns * self.rows * pixels**2, "pixels", "take fewer a square")
+        if pixels < (least := 6 * self.square / self.marker):  # a marker has 6 cells along its side
+            raise ValueError(f"pixels is {pixels}; give at least {np.ceil(least):g} a square, to draw the markers")
         return self.charuco.generateImage((self.columns * pixels, self.rows * pixels))
 
-    def detect(self, picture: Any) -> tuple[Indices, Array, bool]:
+    def detect(self, picture: Annotated[Any, GREY]) -> tuple[Indices, Array, bool]:
         """Return the numbers of the corners in a grey picture, shape (m,), and their pixels, shape (m, 2).
 
         The last value is True if a marker is seen twice, so that there are two boards.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
-from percept_obs.validation import bar, load_pandas
+from percept_obs.validation import bar, checked, load_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,6 +40,7 @@ BOARD = "board"
 """Name of the distance of a corner of the board."""
 
 
+@checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Film(Footage):
     """Film with known poses of its camera, as a sequence of the recordings of its points.
@@ -81,6 +83,12 @@ class Film(Footage):
     focal_deviation: float = 0.0
     board: Board | None = None
     seen: Seen | None = None
+
+    def index(self, value: Any, start: int = 0, stop: int | None = None) -> int:
+        """Return the number of one of the film's recordings."""
+        if not any(each is value for each in self.recordings[start:stop]):
+            raise ValueError("this is none of the film's recordings; give one of film.recordings")
+        return self.recordings.index(value, start)
 
     @property
     def motion(self) -> Motion:
@@ -157,9 +165,12 @@ class Film(Footage):
 
     def overlay(self, path: PathLike) -> None:
         """Write the film with the distances of its points and their claimed interval drawn in, as MP4."""
+        if not Path(path).absolute().parent.is_dir() or Path(path).is_dir():
+            raise ValueError(f"cannot write '{path}'; name a file, such as out.mp4, in a folder that is there")
         write_overlay(path, self.video, self.camera, self.runs, [self.claimed(run) for run in self.runs])
 
     def claimed(self, run: Run) -> Array:
         """Two standard deviations of a run's distances in metres, by its filter and the focal length."""
+        self.index(run.recording)
         relative = np.sqrt(np.maximum(run.covariance[:, -1, -1], 0.0)) / np.maximum(run.estimate[:, -1], 1e-12)
         return np.asarray(2 * np.hypot(relative, self.focal_deviation) * run.distance)

@@ -80,7 +80,7 @@ def read_film(
     ModuleNotFoundError
         If PyAV or OpenCV is missing.
     ValueError
-        If it is no film, shows no board or too little of it, or two of a kind, or nothing is seen for long enough.
+        If it is no film, shows no board, too little of it or two, nothing for long enough, or poses come with a board.
 
     See Also
     --------
@@ -99,9 +99,11 @@ def read_film(
     >>> film.recordings[0].source  # doctest: +SKIP
     'board corner 0'
     """
-    video = open_film(path)
     if poses is not None and camera is None:
         raise ValueError("poses are given and no camera; give also camera=PixelCamera(...), in pixels of the film")
+    if poses is not None and board is not None:
+        raise ValueError("poses and a board are given, and poses are for a film without a board; leave one of them out")
+    video = open_film(path)
     printed = board if isinstance(board, Board) else Board() if board is None else Board.from_json(board)
     sighting = raw = sight(video, printed)
     fisheye = camera if camera is not None and camera.lens == "equidistant" else None

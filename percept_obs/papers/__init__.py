@@ -23,7 +23,7 @@ from pkgutil import iter_modules
 
 from percept_obs.papers.entries import Entry, Finding, Known, Verdict
 from percept_obs.papers.ledger import Ledger, page
-from percept_obs.validation import bar, checked, workers
+from percept_obs.validation import bar, checked, positive, workers
 
 __all__ = ["LEDGERS", "Entry", "Finding", "Known", "Ledger", "Verdict", "find", "judge", "page", "report"]
 
@@ -133,6 +133,7 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
     >>> judge(find(["(10)"], paper="Ma"), processes=1)
     True
     """
+    positive(processes=1 if processes is None else processes)
     wanted = [entry for ledger in ledgers for entry in ledger.entries]
     if len(wanted) > FEW and (processes or workers()) > 1:
         asked = set(wanted)

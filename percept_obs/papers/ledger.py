@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ import sympy as sp
 
 from percept_obs.papers.entries import Entry, Known, Verdict
 from percept_obs.papers.mathml import shown
-from percept_obs.validation import load_pandas
+from percept_obs.validation import checked, load_pandas
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,6 +22,7 @@ WIDTHS = (16, 5, 30, 16, 49)
 COLUMNS = ("equation", "page", "says", "print", "verdict", "known", "note")
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Ledger:
     """All entries of one paper: the numbered equations by number, then what is stated beside them by page.
@@ -115,7 +116,8 @@ def summary(verdicts: Iterable[Verdict]) -> str:
     return ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict)
 
 
-def page(ledgers: Iterable[Ledger]) -> str:
+@checked
+def page(ledgers: Sequence[Ledger]) -> str:
     """All entries as a page of HTML that needs no network, with a box that leaves those in which a word stands.
 
     Parameters

@@ -93,10 +93,14 @@ def build(
 
     Raises
     ------
+    ValueError
+        If the address is none of a site.
     SiteFault
         If a notebook does not run, a page has a fault such as a link that leads nowhere, or JupyterLite cannot be
         built.  What can be known without running is asked before any work starts, and told at once.
     """
+    if address and not address.startswith(("https://", "http://")):
+        raise ValueError(f"the address is {address!r}; it begins with https://, as https://example.org/course/")
     address = address and address.rstrip("/") + "/"
     run = {*notebooks, *NAMED} if run is None else {*run}
     names = named(notebooks, exam)

@@ -297,7 +297,7 @@ test_what_does_not_fit_is_refused = refuses(
     (None, AFFINE, "a NoneType is no formula"),
     (sp.nan, AFFINE, "has no finite value; look for a division by zero"),
     (float("nan"), AFFINE, "has no finite value"),
-    (RATE, 3.5, "nothing can be compared with a float"),
+    (RATE, 3.5, "nothing can be compared with the number 3.5"),
     ("J = 1", Derivation(()), "the derivation has no formulas of its own"),
 )
 

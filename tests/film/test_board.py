@@ -152,6 +152,9 @@ def test_a_board_printed_otherwise_has_the_ruler_s_scale(ruler):
         (lambda: Board(2, 5), "2 x 5 squares; it needs 3 x 3"),
         (lambda: Board(11, 10), "at most 100 squares"),
         (lambda: Board(square=0.03, marker=0.03), "the marker must be smaller"),
+        (lambda: Board(square=36), "the square 1 m at most"),
+        (lambda: Board().picture(3), "give at least 8 a square"),
+        (lambda: Board().detect("picture.png"), "expected grey values of 8 bits"),
         (lambda: Board().printed(9.75), "the ruler measures 9.75 mm; expected about 100"),
         (lambda: board_pdf(Board(square=36e-6, marker=27e-6)), "markers of 0.027 mm are too small to be filmed"),
         (lambda: board_pdf(Board(), "A5"), "there is no paper 'A5'; there are A4, letter"),
@@ -162,7 +165,9 @@ def test_a_wrong_board_is_refused_with_a_sentence(make, sentence):
         make()
 
 
-@pytest.mark.parametrize("text", ["", "[7, 5]", '{"columns": 7, "square": "0.04"}', '{"colour": "red"}'])
+@pytest.mark.parametrize(
+    "text", ["", "[7, 5]", '{"columns": 7}', '{"columns": 7, "square": "0.04"}', '{"colour": "red"}']
+)
 def test_a_file_of_something_else_is_no_board(tmp_path, text):
     file = tmp_path / "my board.json"
     file.write_text(text)

@@ -1,5 +1,7 @@
 """The film that ships is what the renderer draws, and its distances are true; who only turns is told not to trust."""
 
+from dataclasses import replace
+
 import av
 import numpy as np
 import pandas as pd
@@ -7,6 +9,7 @@ import pytest
 from film_renderer import example_film as draw
 from film_renderer import quick_film
 
+from percept_obs import track
 from percept_obs.film import example_film, read_film
 
 
@@ -57,3 +60,15 @@ def test_moving_sideways_is_trusted_and_turning_is_not(kind, least, most, tmp_pa
     assert least <= np.mean([trust.trusted for trust in trusts]) <= most
     if kind == "turn":
         assert "Do not trust the estimate" in trusts[0].sentence
+
+
+@pytest.mark.slow
+def test_what_is_of_another_film_is_refused(tmp_path):
+    film = read_film(example_film())
+    other = replace(film[0])
+    run = track(other, film.observer)
+    for call in (film.index, lambda _: film.claimed(run), lambda _: replace(film, recordings=(run,))):
+        with pytest.raises(ValueError, match=r"none of the film's recordings|each entry a Recording"):
+            call(other)
+    with pytest.raises(ValueError, match="in a folder that is there"):
+        film.overlay(tmp_path / "no" / "film.mp4")

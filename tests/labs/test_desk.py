@@ -89,7 +89,7 @@ def test_a_system_follows_from_a_name_on_every_machine():
     rate = "a11*y1 + a13*y2 - a22*y1 - a23*y1*y2 + b1*y3 - b2*y1*y3"
     assert (str(system.rate[0]), outputs) == (rate, ("y2",))
     assert system_of_student(" ada ")[0].rate == system.rate
-    desk = derivation_desk(student="Ada", surface="sphere")
+    desk = derivation_desk(**{**derivation_desk(student="Ada").settings, "surface": "sphere"})
     assert desk.sheet().goal.lines[-3].name == derivation_desk().sheet().goal.lines[-3].name
     assert "sphere" not in desk.sheets["student Ada, rate"]["title"]
 

@@ -42,7 +42,7 @@ def random_states(name, count):
         "points": random_points,
         "structure": lambda seed: list(STRUCTURE_CASES.values())[seed % len(STRUCTURE_CASES)],
     }[name]
-    found = [lab.check(known(seed)) for seed in range(max(1, count // 10))]
+    found = [lab.check({**lab.settings, **known(seed)}) for seed in range(max(1, count // 10))]
     for message in messages(lab, 20 * count, 3, with_summary=0):
         if len(found) == count:
             break

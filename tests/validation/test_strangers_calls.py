@@ -18,9 +18,11 @@ from percept_obs import (
     Recording,
     StructureAndMotion,
     affine,
+    check,
     cli,
     ekf,
     ensemble,
+    figures,
     ibo,
     instantaneous,
     pinhole,
@@ -31,13 +33,16 @@ from percept_obs import (
     track,
     windowed,
 )
+from percept_obs.checking import target_of
 from percept_obs.exercises import derive, individual, reach, students_copy
 from percept_obs.exercises.copies import stub
-from percept_obs.labs import derivation_desk, observer_lab
-from percept_obs.papers import find
+from percept_obs.film import Board, example_film, read_film
+from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
+from percept_obs.papers import MA2005, find, judge
 from percept_obs.recording import Frames, render
 from percept_obs.recording.imu import Imu
 from percept_obs.recording.plausibility import Unlikely
+from percept_obs.recording.poses import Poses
 from percept_obs.recording.recording import Sighting
 from percept_obs.structure import GivenDepth, PatchDepth, ScaledDepthCamera, grid_patch, seen_as
 from percept_obs.structure.pixels import SignalToNoise
@@ -50,6 +55,7 @@ from percept_obs.validation import needed
 SYSTEM, SEEN = PerspectiveSystem(affine(), pinhole()), record(scenarios.ma2005_eq35(), 1)
 HOUSE, LINE, SOME = chwa2019_experiment("IV.A"), bearings_only(), np.random.default_rng(0)
 SAMPLED = affine(np.zeros((3, 3)), np.zeros((11, 3)), np.linspace(0, 1, 11))
+POSES = Poses([0, 1], [[0, 0, 0], [0, 0, 1]], [[0, 0, 0, 1]] * 2)
 
 test_they_are_refused_with_what_to_do = refuses(
     lambda call: call(),
@@ -100,7 +106,48 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: render(record(HOUSE, 0.1)), "image coordinates of one point"),
     (lambda: Frames([np.full((2, 2), 1000.0)], [0.0], (-1, 1, -1, 1)), "expected 0 to 1"),
     (lambda: Frames(5, [0.0], (-1, 1, -1, 1)), "a sequence of files or arrays"),
+    (lambda: observer_lab(xi=0.5), "surface is 'pinhole', not 'unified'"),
+    (lambda: observer_lab(duration=5, window=50), "window is 50, but duration is 5"),
+    (lambda: observer_lab(duration=10, sight=[50, 60]), "the run is from 0 to 10 s"),
+    (lambda: observer_lab(SEEN, X0=[0, 0, 5]), "scenario is"),
+    (lambda: observer_lab().runs(None), "they must be a mapping"),
+    (lambda: points_lab(P0=3), "weight is 'constant', not 'lyapunov' or 'riccati'"),
+    (lambda: points_lab(hidden=[[50, 60], None, None]), "duration is 30"),
+    (lambda: derivation_desk(student="Ada", motion="rigid"), "student is 'Ada'"),
+    (lambda: derivation_desk(typed={"rate 6 y9'": "a13"}), "this step has y1', y2', y3'"),
+    (lambda: check("y1' = b1", PerspectiveSystem), "the class PerspectiveSystem"),
+    (lambda: target_of({}), "there is no formula"),
+    (lambda: target_of(SYSTEM).own("b1"), "formula is the text 'b1'"),
+    (lambda: MA2005.search(38), "expected text"),
+    (lambda: judge(find([10], paper="Ma"), processes=0), "processes is 0"),
+    (lambda: reach(2.0, {"seconds": 2}, seconds=2), "expected a function"),
+    (lambda: reach(2.0, lambda gain: None, seconds=2), "expected a mapping"),
+    (lambda: individual({"cells": []}, None), "student is None"),
+    (lambda: cli.copy_notebooks("new", "parents"), "there are students, teachers"),
+    (lambda: read_film(example_film(), Board(), PixelCamera((9, 9), (5, 5)), POSES), "leave one of them out"),
+    (lambda: figures.depth_errors({"a": [-0.1]}, 2), "from 0 on"),
 )
+
+
+@pytest.mark.parametrize("make", [observer_lab, points_lab, structure_lab, derivation_desk])
+def test_settings_that_were_read_back_may_do_nothing(make):
+    idle = {"xi": 0.5, "P0": "P = 3", "decrease": 5.0, "rate": 2.0, "window": 100.0, "student": "Ada"}
+    settings = make().settings
+    assert make(**{**settings, **{name: idle[name] for name in idle if name in settings}})
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ("exam a {}", "is a file"),
+        ("lab --copy-only --student= new", "an empty name"),
+        ("site --without-running --address here new", "it begins with https://"),
+    ],
+)
+def test_a_command_is_refused_before_it_works(command, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(command.format(__file__).split()) == 2
+    assert said in capsys.readouterr().err
 
 
 def test_settings_that_are_changed_in_place_say_how_to_set_them():

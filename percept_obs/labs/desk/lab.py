@@ -15,7 +15,7 @@ from percept_obs.labs.desk.systems import system_of, system_of_student
 from percept_obs.labs.desk.texts import sheet_for_the_page, sheet_name
 from percept_obs.labs.shared.lab import Lab
 from percept_obs.labs.shared.printed import part
-from percept_obs.labs.shared.schema import Settings
+from percept_obs.labs.shared.schema import Settings, only
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.validation import checked
 
@@ -55,12 +55,20 @@ class DerivationDesk(Lab):
     def __init__(self, system: PerspectiveSystem | None = None, /, **settings: Any) -> None:
         self._given = system
         opening, given = SCHEMA.opening, None
+        self.idle = dict.fromkeys(("motion", "surface", "outputs"), only("student", ""))
         if system is None and set(settings) <= set(self.looks):
             opening |= EXAMPLE
         if system is not None:
+            self.idle = dict.fromkeys(("student", "motion", "surface"), lambda _: "a system is given")
             given = {"outputs": [list(names) for names in system.output_choices]}
             opening["outputs"] = given["outputs"][0]
         super().__init__("desk_lab", settings, opening, opening, given=given)
+        for key in settings.get("typed", ()) if self.schema.keys() - settings.keys() else ():  # else those read back
+            part, number, line = key.split(" ", 2)
+            steps = sheet_of(*self.system(), self.settings["observer"], part).derivation
+            there = [name for step in steps[int(number) - 1 : int(number)] for name in step.values]
+            if line not in there:
+                raise ValueError(f"typed has {key!r}; this step has {', '.join(there) or 'no lines'}")
         self.analysis = self.analyse()
 
     def refuse(self, settings: Settings) -> None:

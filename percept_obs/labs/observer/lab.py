@@ -29,7 +29,7 @@ from percept_obs.labs.observer.tracks import (
 from percept_obs.labs.shared.common_settings import window_in
 from percept_obs.labs.shared.lab import NOISES, OF_ONE_POINT, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.samples import table_for_the_page
-from percept_obs.labs.shared.schema import Choice, Settings
+from percept_obs.labs.shared.schema import Choice, Settings, in_run, only
 from percept_obs.labs.shared.surfaces import SHAPES, numbers_of, shaped_surface
 from percept_obs.labs.shared.typed_motion import read_motion
 from percept_obs.labs.shared.user_observers import read_observers
@@ -140,17 +140,21 @@ class ObserverLab(Lab):
         known = {n: {"motion": typed_text(s.motion), **as_settings(s, on[n])} for n, s in scenes.items()}
         self._recordings = with_affine_motions(tracks, {n: self._registry.surfaces[on[n]] for n in tracks})
         self.schema = schema_of(self._registry, {**known, **tracks})
+        of_camera = dict.fromkeys(("X0", "duration", "noise", "seed", "period", "dropout"), only("scenario", *scenes))
+        of_motion = dict.fromkeys("Ab", only("scenario", *(name for name in scenes if name not in self._tables)))
+        shaped = {"normal": only("surface", "plane"), "xi": only("surface", "unified")}
+        self.idle = of_camera | of_motion | shaped | {"window": in_run()}
         opening = str(self.schema["scenario"].read("scenario", scenario))
         motions = list(dict.fromkeys(recording.motion for recording in self._recordings.values()))
         shots = list(dict.fromkeys(films.values()))
         fit = known.get(opening) or fitting(self._recordings[opening], on[opening])
-        chosen = {"observers": asked, "surface": surface}
+        chosen = {"observers": asked, "surface": surface, "scenario": opening}
         standard = STANDARD | {name: self.schema[name].opening for name in ("gains", "switches")}
         sampled = {n: {"track": table_for_the_page(motion)} for n, motion in self._tables.items()}
         super().__init__(
             "observer_lab",
             {**settings, **{name: value for name, value in chosen.items() if value is not None}},
-            {**standard, **fit, "scenario": opening},
+            {**standard, **fit},
             standard,
             texts=self._registry.packed,
             scenarios={n: {"title": s.name, **known[n], **sampled.get(n, {})} for n, s in scenes.items()},
@@ -243,7 +247,7 @@ class ObserverLab(Lab):
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
-        return self._followed(self.recorded(settings), settings)
+        return self._followed(self.recorded(settings := self.check(settings)), settings)
 
     def _followed(self, recording: Recording, settings: Settings) -> dict[str, Run]:
         chosen, other = settings["start"], settings["believed"]
@@ -260,6 +264,7 @@ class ObserverLab(Lab):
 
     def recorded(self, settings: Settings) -> Recording:
         """Recording of the camera, as far as the point stays in front of it."""
+        settings = self.check(settings)
         if recording := self._recordings.get(settings["scenario"]):
             return recording
         return _simulated(settings, self._motion_of(settings), self._registry.surfaces[settings["surface"]])

@@ -27,7 +27,7 @@ from percept_obs.labs.shared.common_settings import offering
 from percept_obs.labs.shared.lab import NOISES, Lab
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import is_sampled, refuse_longer, times_of
-from percept_obs.labs.shared.schema import Schema, Settings
+from percept_obs.labs.shared.schema import Schema, Settings, in_run, only
 from percept_obs.labs.shared.typed_motion import read_motion
 from percept_obs.labs.shared.work import solver_calls, too_much, within_reach
 from percept_obs.observability.windows import UNSEEN
@@ -87,6 +87,18 @@ class PointsLab(Lab):
     @checked
     def __init__(self, form: PointsForm | None = None, **settings: Any) -> None:
         self._form = form
+        self.idle = {
+            **dict.fromkeys(("turning", "input", "camera_velocity"), only("state", *STATES)),
+            **{
+                "spin": only("state", "body", "origin"),
+                "depth": only("start", "rays"),
+                "error": only("start", "error"),
+            },
+            **{"P": only("weight", "typed"), "P0": only("weight", "lyapunov", "riccati"), "window": in_run()},
+            **{"decrease": only("weight", "lyapunov"), "forgetting": only("weight", "riccati")},
+            "final": only("weight", "scheduled"),
+            "hidden": in_run(lambda whole: max(times[0] if times else 0 for times in whole["hidden"])),
+        }
         if form is None and not set(settings) - set(self.looks):
             settings = DRIVE | settings
         printed: dict[str, Texts] = {}
@@ -181,7 +193,7 @@ class PointsLab(Lab):
 
     def recorded(self, settings: Settings) -> Recording:
         """Recording of the settings' points."""
-        form = form_of_settings(settings, self._form)
+        form = form_of_settings(settings := self.check(settings), self._form)
         state = state_of(form, settings["points"]).tolist()
         scenario = PointsScenario("from the lab", form, state, settings["duration"])
         noise = NOISES[settings["noise"]["kind"]](settings["noise"]["size"])
@@ -194,7 +206,7 @@ class PointsLab(Lab):
 
     def runs(self, settings: Settings) -> PointsRun:
         """The run of settings."""
-        recording = self.recorded(settings)
+        recording = self.recorded(settings := self.check(settings))
         form = points_form(recording)
         assert recording.truth is not None
         begin: Any = FirstSight(settings["depth"]) if settings["start"] == "rays" else None

@@ -121,6 +121,8 @@ class Lab(anywidget.AnyWidget):
     title = "A lab"
     blocks: Blocks = MappingProxyType({})
     """Vectors and matrices that may vary over time, by their letters."""
+    idle: Mapping[str, Callable[[Settings], str]] = MappingProxyType({})
+    """Why settings do nothing with others, or empty; those are refused, unless all are given, as when read back."""
     looks: Schema = Schema()
     """Schema of the view, which no run depends on: the drawer's open group, charts, the part of the time."""
     from_the_page: tuple[str, ...] = ("view", "settings", "summary")
@@ -148,6 +150,9 @@ class Lab(anywidget.AnyWidget):
         running = self._opening.get("observers", [])
         if view.get("chosen") and view["chosen"] not in running:
             raise ValueError(f"chosen is {view['chosen']!r}; choose one of the observers that run: {running}")
+        sight, lasts = view.get("sight"), self._opening.get("duration")
+        if sight and self.schema.keys() - settings.keys() and not (sight[0] < lasts and sight[1] > 0):
+            raise ValueError(f"sight is {sight}; the run is from 0 to {lasts:g} s")
         model |= {"opening": self._opening, "standard": self.check(standard), "schema": self.schema.for_the_page()}
         model |= {"view": {"schema": self.looks.for_the_page(), "standard": self.looks.opening}}
         super().__init__(
@@ -172,6 +177,9 @@ class Lab(anywidget.AnyWidget):
         """Complete settings, or a ValueError that says what is wrong."""
         whole = self.schema.read(settings, self._opening)
         self.refuse(whole)
+        for name, reason in self.idle.items() if self.schema.keys() - settings.keys() else ():
+            if name in settings and whole[name] and (why := reason(whole)):
+                raise ValueError(f"{name} is {settings[name]!r}, but {why}; change one of the two, or leave {name} out")
         if whole.get("kept") is not None:
             whole["kept"] = self.check({**whole["kept"], "kept": None})
         return whole

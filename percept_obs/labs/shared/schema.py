@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, fields
 from numbers import Integral, Real
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -303,6 +304,17 @@ class Schema(dict[str, Kind]):
         about = {name: kind.about or kind.label or kind.expected for name, kind in self.items()}
         units = {name: f", in {kind.unit}" if kind.unit else "" for name, kind in self.items()}
         return "\n".join(f"{name} : {about[name]}{units[name]}" for name in self)
+
+
+def only(name: str, *values: str) -> Callable[[Settings], str]:
+    """Return the reason of a setting that does something with some values of another one only."""
+    named = " or ".join(map(repr, values))
+    return lambda whole: "" if whole[name] in values else f"{name} is {whole[name]!r}, not {named}"
+
+
+def in_run(seconds: Callable[[Settings], float] = itemgetter("window")) -> Callable[[Settings], str]:
+    """Return the reason of a setting that does something for no more seconds than the run has."""
+    return lambda whole: f"duration is {whole['duration']:g}" if seconds(whole) > whole["duration"] else ""
 
 
 def vector(entries: Sequence[str], about: str = "", unit: str = "", **kind: Any) -> Row:

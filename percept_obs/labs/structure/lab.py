@@ -16,7 +16,7 @@ from percept_obs.labs.shared.common_settings import gains, offering, own_gains
 from percept_obs.labs.shared.lab import NOISES, OF_ONE_POINT, Lab, record_while_seen, refuse_observers
 from percept_obs.labs.shared.printed import Texts, part, with_texts
 from percept_obs.labs.shared.samples import samples_for_the_page
-from percept_obs.labs.shared.schema import Schema, Settings
+from percept_obs.labs.shared.schema import Schema, Settings, only
 from percept_obs.labs.shared.typed_motion import Typed, read_motion
 from percept_obs.labs.shared.user_observers import UserObserver, loops_for_the_page, read_observers, texts_of_observer
 from percept_obs.labs.shared.work import motion_work, too_much, within_reach
@@ -93,9 +93,13 @@ class StructureLab(Lab):
     looks = LOOKS
 
     def __init__(self, form: Given | None = None, *, observers: Sequence[Any] | None = None, **settings: Any) -> None:
+        self.idle = {
+            **dict.fromkeys(("v_c", "v_p", "v_c_swing", "v_p_swing", "w_c"), only("velocities", "set")),
+            "rate": lambda whole: "" if any(whole["v_c_swing"] + whole["v_p_swing"]) else "no velocity swings",
+            "earlier": lambda whole: "d_s is unknown" if "d_s" in whole["unknown"] else "",
+        }
         plain = form is None and observers is None and not set(settings) - set(self.looks)
         found, self._samples = (DRIVE if plain else {}, None) if form is None else opening_of(form)
-        settings = found | settings
         ours = {name: make for name, (_, make) in OBSERVERS.items()}
         asked, self._user_observers = (None, {}) if observers is None else read_observers(observers, ours)
         self._makers = {**ours, **self._user_observers}
@@ -114,7 +118,7 @@ class StructureLab(Lab):
         super().__init__(
             "structure_lab",
             settings,
-            opening,
+            opening | found,
             opening,
             texts=with_texts("structure_lab", self._added),
             own={name: make.for_the_page() for name, make in self._user_observers.items()},
@@ -128,7 +132,7 @@ class StructureLab(Lab):
 
     def runs(self, settings: Settings) -> dict[str, Run]:
         """Runs of settings, by the observers' names."""
-        unknowns = unknowns_of(settings, self._samples)
+        unknowns = unknowns_of(settings := self.check(settings), self._samples)
         recording = _recorded(settings, unknowns, _used(settings, self._samples))
         start = {"y1": 0.0, "y2": 0.0, "ybar3": 0.0} if settings["start"] == "zero" else None
         observers = {
