@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import sympy as sp
 from sympy.solvers.solveset import NonlinearError
@@ -99,7 +100,8 @@ class Observer:
     Raises
     ------
     ValueError
-        If the estimate or the start has another length or strange symbols, or a gain of the equations is missing.
+        If estimate, start or covariance have another size or strange symbols, the equations have outputs or parameters
+        that the form has not, or a gain of the equations is missing.
 
     See Also
     --------
@@ -130,10 +132,13 @@ class Observer:
 
     def __post_init__(self) -> None:
         _refuse_strangers(self.name, self.form, self.equations, self.estimate, self.start)
+        n, shape = len(self.form.coordinates), None if self.covariance is None else self.covariance.shape
+        if shape not in (None, (n, n)):
+            raise ValueError(f"the covariance of the {self.name} observer has the shape {shape}; expected {(n, n)}")
         if missing := set(self.equations.gains) - set(self.gain_values):
             raise ValueError(f"the {self.name} observer has no Gain for {', '.join(sorted(map(str, missing)))}")
 
-    def with_gains(self, **values: float) -> Observer:
+    def with_gains(self, **values: Any) -> Observer:
         """Observer with other gains, all in range; nothing is compiled again."""
         known = [gain.name for gain in self.gains]
         unknown = sorted(set(values) - set(known))
@@ -230,14 +235,26 @@ class Observer:
         Raises
         ------
         ValueError
-            If measured outputs are needed, or the motion has no numbers.
+            If measured outputs are needed, or the motion has no numbers or is not of the form's kind.
         """
+        if self.form.parameters != (expected := (*motion.parameters, *self.form.values)):
+            raise ValueError(
+                f"the {self.name} observer has the parameters {', '.join(map(str, self.form.parameters))}, motion and "
+                f"view have {', '.join(map(str, expected))}; give the kind of motion of its form"
+            )
         if self.equations.measured and measured is None:
             outputs = ", ".join(map(str, self.equations.measured))
             raise ValueError(f"the {self.name} observer uses {outputs}; pass measured=, a function of time")
         flow = right_hand_side(self.equations, {**self.form.values, **self.gain_values, **motion.values})
         constant = motion.signal is not None and motion.signal.constant
-        return lambda t, state: flow(state, measured(t) if measured else (), () if constant else motion.known(t)[0])
+
+        def rate(t: float, state: Sequence[float]) -> list[float]:
+            seen = measured(t) if measured else ()
+            if len(seen) != len(self.equations.measured):
+                raise ValueError(f"measured gives {len(seen)} numbers; expected {len(self.equations.measured)}")
+            return flow(state, seen, () if constant else motion.known(t)[0])
+
+        return rate
 
     def _repr_latex_(self) -> str:
         """Equations without the terms that gains of 0 remove."""
@@ -251,6 +268,11 @@ def _refuse_strangers(
 ) -> None:
     """Refuse an estimate and a start of other lengths than needed, or in symbols that nothing provides."""
     known = {*form.x1, *form.parameters, *equations.gains}
+    if others := {*equations.measured, *equations.parameters} - known:
+        raise ValueError(
+            f"the equations of the {name} observer use {', '.join(sorted(map(str, others)))}, which its form has not; "
+            "derive them from this form"
+        )
     asked = {*hats(form.coordinates), *first_seen(form.x1)}
     for part, entries, length, given, remedy in (
         ("estimate", estimate, len(form.coordinates), {*equations.state}, "pass estimate="),
@@ -320,6 +342,8 @@ def with_point(observer: Observer) -> Observer:
     ------
     WrongKind
         If an argument is of another kind.
+    ValueError
+        If the observer has its point already.
 
     See Also
     --------
@@ -334,6 +358,8 @@ def with_point(observer: Observer) -> Observer:
     """
     form, eq = observer.form, observer.equations
     point = (*form.x1, *form.x2)
+    if set(point) & set(eq.state):
+        raise ValueError(f"the {observer.name} observer has its point already; take it as it is")
     reset = (*point, *eq.reset) if eq.reset else ()
     flow = (*form.rate, *eq.flow)
     together = replace(eq, state=(*point, *eq.state), flow=flow, measured=(), update=(), reset=reset)

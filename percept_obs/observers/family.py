@@ -35,6 +35,11 @@ class Option:
     choices : tuple of str
         Names that it may be; empty if it is anything of the default's kind.
 
+    Raises
+    ------
+    ValueError
+        If the default is none of the choices.
+
     See Also
     --------
     percept_obs.observers.Family : Holds options.
@@ -52,6 +57,10 @@ class Option:
     value: Any
     meaning: str
     choices: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.choices and self.value not in self.choices:
+            raise ValueError(f"{self.name} is {self.value!r}, none of its choices {', '.join(map(repr, self.choices))}")
 
     def __str__(self) -> str:
         """Two lines of a docstring."""
@@ -166,6 +175,8 @@ class Family:
     for_structure: bool = False
 
     def __post_init__(self) -> None:
+        for name, kind in (("name", str), ("gains", tuple[Gain, ...]), ("options", tuple[Option, ...])):
+            refuse_kind("family", name, getattr(self, name), kind)
         names = {name: getattr(self.derive, name) for name in ("__name__", "__qualname__", "__module__")}
         set_fields(self, **names, __doc__=self._docstring(), __signature__=self._signature())
 
@@ -179,17 +190,24 @@ class Family:
         """Names of its ways to switch, its own first; none if it does not switch."""
         return next((option.choices for option in self.options if option.name == "switch"), ())
 
-    def objection(self, form: PartitionedSystem) -> ValueError | None:
+    def objection(self, form: PartitionedSystem | PerspectiveSystem) -> ValueError | None:
         """Error that a call with this form raises; None if there is an observer of it."""
+        form = self._form(form)
         if self.any_form:
             return None
         if form.culprits:
             return NotAffine(form.measured, form.culprits)
         return self.objection_of(form.canonical_form()) if self.objection_of else None
 
-    def refusal(self, form: PartitionedSystem) -> str:
+    def refusal(self, form: PartitionedSystem | PerspectiveSystem) -> str:
         """Reason why there is no observer of this form; empty if there is one."""
         return str(self.objection(form) or "")
+
+    def _form(self, form: PartitionedSystem | PerspectiveSystem) -> PartitionedSystem:
+        refuse_kind(self.key, "form", form, PartitionedSystem | PerspectiveSystem)
+        if isinstance(form, PartitionedSystem):
+            return form
+        return form.partition(*(symbol.name for symbol in form.surface.image_coordinates))
 
     def __call__(self, form: PartitionedSystem | PerspectiveSystem, *options: Any, **chosen: Any) -> Observer:
         """Make an observer of this form.
@@ -201,9 +219,7 @@ class Family:
         ValueError
             The `objection`, or if an option or a gain is refused.
         """
-        refuse_kind(self.key, "form", form, PartitionedSystem | PerspectiveSystem)
-        if isinstance(form, PerspectiveSystem):
-            form = form.partition(*(symbol.name for symbol in form.surface.image_coordinates))
+        form = self._form(form)
         objection = self.objection(form)
         if objection is not None:
             raise objection
