@@ -22,6 +22,7 @@ from matplotlib.axes import Axes
 from percept_obs.compile import Array as Array
 from percept_obs.figures.look import GREY, LIGHT, WIDTH
 from percept_obs.recording import Recording
+from percept_obs.system.view import refuse_several
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
 from percept_obs.validation.kinds import with_article
@@ -219,6 +220,7 @@ def runs_of_one_point(runs: Run | Sequence[Run]) -> list[Run]:
     """Return runs as a list; their times, surfaces and truths must be equal."""
     found = require_several(runs, Run, "track()")
     first = found[0].recording
+    refuse_several("this figure", first.view)
     for number, run in enumerate(found[1:], 2):
         other = run.recording
         same = {

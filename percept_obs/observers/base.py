@@ -100,8 +100,7 @@ class Observer:
     Raises
     ------
     ValueError
-        If estimate, start or covariance have another size or strange symbols, the equations have outputs or parameters
-        that the form has not, or a gain of the equations is missing.
+        If estimate, start or covariance has another size, or there are strange symbols, or a gain is missing.
 
     See Also
     --------
@@ -132,9 +131,8 @@ class Observer:
 
     def __post_init__(self) -> None:
         _refuse_strangers(self.name, self.form, self.equations, self.estimate, self.start)
-        n, shape = len(self.form.coordinates), None if self.covariance is None else self.covariance.shape
-        if shape not in (None, (n, n)):
-            raise ValueError(f"the covariance of the {self.name} observer has the shape {shape}; expected {(n, n)}")
+        if self.covariance is not None and self.covariance.rows != len(self.estimate):
+            raise ValueError(f"the covariance has the shape {self.covariance.shape}; expected a row a coordinate")
         if missing := set(self.equations.gains) - set(self.gain_values):
             raise ValueError(f"the {self.name} observer has no Gain for {', '.join(sorted(map(str, missing)))}")
 
@@ -237,24 +235,14 @@ class Observer:
         ValueError
             If measured outputs are needed, or the motion has no numbers or is not of the form's kind.
         """
-        if self.form.parameters != (expected := (*motion.parameters, *self.form.values)):
-            raise ValueError(
-                f"the {self.name} observer has the parameters {', '.join(map(str, self.form.parameters))}, motion and "
-                f"view have {', '.join(map(str, expected))}; give the kind of motion of its form"
-            )
+        if self.form.parameters != (*motion.parameters, *self.form.values):
+            raise ValueError(f"the {self.name} observer is of a form with {self.form.parameters}; give such a motion")
         if self.equations.measured and measured is None:
             outputs = ", ".join(map(str, self.equations.measured))
             raise ValueError(f"the {self.name} observer uses {outputs}; pass measured=, a function of time")
         flow = right_hand_side(self.equations, {**self.form.values, **self.gain_values, **motion.values})
         constant = motion.signal is not None and motion.signal.constant
-
-        def rate(t: float, state: Sequence[float]) -> list[float]:
-            seen = measured(t) if measured else ()
-            if len(seen) != len(self.equations.measured):
-                raise ValueError(f"measured gives {len(seen)} numbers; expected {len(self.equations.measured)}")
-            return flow(state, seen, () if constant else motion.known(t)[0])
-
-        return rate
+        return lambda t, state: flow(state, measured(t) if measured else (), () if constant else motion.known(t)[0])
 
     def _repr_latex_(self) -> str:
         """Equations without the terms that gains of 0 remove."""
@@ -269,10 +257,7 @@ def _refuse_strangers(
     """Refuse an estimate and a start of other lengths than needed, or in symbols that nothing provides."""
     known = {*form.x1, *form.parameters, *equations.gains}
     if others := {*equations.measured, *equations.parameters} - known:
-        raise ValueError(
-            f"the equations of the {name} observer use {', '.join(sorted(map(str, others)))}, which its form has not; "
-            "derive them from this form"
-        )
+        raise ValueError(f"the {name} observer's equations use {others}, which its form has not; derive them from it")
     asked = {*hats(form.coordinates), *first_seen(form.x1)}
     for part, entries, length, given, remedy in (
         ("estimate", estimate, len(form.coordinates), {*equations.state}, "pass estimate="),
@@ -340,10 +325,8 @@ def with_point(observer: Observer) -> Observer:
 
     Raises
     ------
-    WrongKind
-        If an argument is of another kind.
     ValueError
-        If the observer has its point already.
+        If an argument is of another kind, or the observer has its point already.
 
     See Also
     --------

@@ -35,11 +35,6 @@ class Option:
     choices : tuple of str
         Names that it may be; empty if it is anything of the default's kind.
 
-    Raises
-    ------
-    ValueError
-        If the default is none of the choices.
-
     See Also
     --------
     percept_obs.observers.Family : Holds options.
@@ -190,24 +185,18 @@ class Family:
         """Names of its ways to switch, its own first; none if it does not switch."""
         return next((option.choices for option in self.options if option.name == "switch"), ())
 
-    def objection(self, form: PartitionedSystem | PerspectiveSystem) -> ValueError | None:
+    def objection(self, form: PartitionedSystem) -> ValueError | None:
         """Error that a call with this form raises; None if there is an observer of it."""
-        form = self._form(form)
+        refuse_kind(self.key, "form", form, PartitionedSystem)
         if self.any_form:
             return None
         if form.culprits:
             return NotAffine(form.measured, form.culprits)
         return self.objection_of(form.canonical_form()) if self.objection_of else None
 
-    def refusal(self, form: PartitionedSystem | PerspectiveSystem) -> str:
+    def refusal(self, form: PartitionedSystem) -> str:
         """Reason why there is no observer of this form; empty if there is one."""
         return str(self.objection(form) or "")
-
-    def _form(self, form: PartitionedSystem | PerspectiveSystem) -> PartitionedSystem:
-        refuse_kind(self.key, "form", form, PartitionedSystem | PerspectiveSystem)
-        if isinstance(form, PartitionedSystem):
-            return form
-        return form.partition(*(symbol.name for symbol in form.surface.image_coordinates))
 
     def __call__(self, form: PartitionedSystem | PerspectiveSystem, *options: Any, **chosen: Any) -> Observer:
         """Make an observer of this form.
@@ -219,7 +208,9 @@ class Family:
         ValueError
             The `objection`, or if an option or a gain is refused.
         """
-        form = self._form(form)
+        refuse_kind(self.key, "form", form, PartitionedSystem | PerspectiveSystem)
+        if isinstance(form, PerspectiveSystem):
+            form = form.partition(*(symbol.name for symbol in form.surface.image_coordinates))
         objection = self.objection(form)
         if objection is not None:
             raise objection

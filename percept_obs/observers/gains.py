@@ -40,8 +40,7 @@ class Gain:
     Raises
     ------
     ValueError
-        If the value is not a finite number, or does not fulfil the condition, or the name is none in Python, or the
-        range is none.
+        If the value is not finite, or does not fulfil the condition, or the name or the range makes no sense.
 
     See Also
     --------
@@ -99,11 +98,6 @@ def grid(**values: Sequence[float]) -> tuple[dict[str, float], ...]:
     ----------
     **values : sequence of float
         Values to try, by the names of gains.
-
-    Raises
-    ------
-    ValueError
-        If a gain has no value to try.
 
     See Also
     --------

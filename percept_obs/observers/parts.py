@@ -148,11 +148,6 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
     estimate : symbols
         Those of the state whose norm is bounded.
 
-    Raises
-    ------
-    ValueError
-        If the estimate is empty or not of the state.
-
     See Also
     --------
     identifier_based : Uses it.
