@@ -19,7 +19,7 @@ from percept_obs.structure.pixels import SignalToNoise, homography
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
-from percept_obs.validation import Chain, checked, limit, numbers, positive, set_fields
+from percept_obs.validation import Chain, checked, limit, numbers, set_fields
 
 NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
@@ -227,7 +227,8 @@ class StructureScenario(Scenario):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        positive(scale=self.scale)
+        if not (np.isfinite(self.scale) and self.scale > 0):
+            raise ValueError(f"d_s is {self.scale}; it is one over a distance in metres, finite and positive")
         if self.choice.parameters:
             set_fields(self, choice=replace(self.choice, scale=self.scale))
         if not pinhole().fits(self.surface):
