@@ -87,8 +87,8 @@ class Run:
     """Advice if it diverged."""
 
     def __post_init__(self) -> None:
-        for name, *shape in (("estimate", len(self.view.coordinates)), ("state", "s"), ("unobservable",)):
-            numbers(getattr(self, name), f"values of {name}", len(self.time), *shape).setflags(write=False)
+        for name, columns in (("estimate", len(self.view.coordinates)), ("state", "s")):
+            numbers(getattr(self, name), f"values of {name}", len(self.time), columns).setflags(write=False)
 
     @property
     def time(self) -> Array:
