@@ -22,6 +22,7 @@ from matplotlib.axes import Axes
 from percept_obs.compile import Array as Array
 from percept_obs.figures.look import GREY, LIGHT, WIDTH
 from percept_obs.recording import Recording
+from percept_obs.system.view import refuse_several
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
 from percept_obs.validation.kinds import with_article
@@ -218,8 +219,8 @@ def recording_and_run(data: Run | Recording) -> tuple[Recording, Run | None]:
 def runs_of_one_point(runs: Run | Sequence[Run]) -> list[Run]:
     """Return runs as a list; their times, surfaces and truths must be equal."""
     found = require_several(runs, Run, "track()")
-    if any(run.recording.view.point_shape for run in found):
-        raise ValueError("a run is of several points, and the figure of one; draw image_plane, scene or error_norm")
+    for run in found:
+        refuse_several("this figure", run.recording.view)
     first = found[0].recording
     for number, run in enumerate(found[1:], 2):
         other = run.recording

@@ -55,7 +55,7 @@ def signals(run: Run, axes: Sequence[Axes] | None = None) -> Drawing:
     distance : In metres.
     runs_over_time : Several observers.
     """
-    base.runs_of_one_point(run)
+    (run,) = base.runs_of_one_point(run)
     names = [symbol.name for symbol in run.view.coordinates]
     known = run.recording.truth is not None
     what = "error" if known else "innovation"

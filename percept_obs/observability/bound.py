@@ -16,8 +16,9 @@ from percept_obs.observability.matching import System, matching_form
 from percept_obs.observers import extended_kalman
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
+from percept_obs.tracking.following import require_definite
 from percept_obs.tracking.linearised import Doubt, Linearised, linearisation, names_of, positions
-from percept_obs.validation import checked, positive
+from percept_obs.validation import checked, numbers, positive
 
 Prior = Mapping[str, float] | ArrayLike | None
 
@@ -103,8 +104,7 @@ class Bound:
     @property
     def relative(self) -> Array:
         """Least relative standard deviation of the distance, to first order, shape (K,)."""
-        assert self.recording.truth is not None
-        return self.deviation[:, -1] / self.recording.view.inverse(self.recording.truth)
+        return self.deviation[:, -1] * self.recording.distance
 
     def kept(self) -> tuple[Array, Array]:
         """Standard deviations of hidden directions at the start after all samples, as shares of those before any.
@@ -252,6 +252,7 @@ def _covariances(along: Linearised, start: Array, noise: Array, used: Flags) -> 
 
 def _deviations(covariances: Array) -> Array:
     """Standard deviations, shape (K, n)."""
+    covariances = numbers(covariances, "the covariances", "K", "n", "n")
     return np.sqrt(np.maximum(np.diagonal(covariances, axis1=1, axis2=2), 0.0))
 
 
@@ -271,7 +272,7 @@ def _noise(recording: Recording, form: PartitionedSystem, variance: ArrayLike | 
             f"the noise_variance has shape {values.shape}; expected a number, ({m},), ({m}, {m}) or ({count}, {m}, {m})"
         )
     values = values.reshape(-1, m, m)
-    _require_covariance("the noise_variance", values)
+    require_definite("the noise_variance", values)
     return values
 
 
@@ -282,7 +283,7 @@ def _start(form: PartitionedSystem, prior: Prior, noise: Array, hidden: Array) -
         start = np.array(prior, dtype=float)
         if start.shape != (n, n):
             raise ValueError(f"the prior has shape {start.shape}; expected ({n}, {n}), or variances by their names")
-        _require_covariance("the prior", start[None])
+        require_definite("the prior", start)
         return start, False
     variances = dict(prior or {})
     unknown = set(variances) - set(names_of(form))
@@ -295,13 +296,5 @@ def _start(form: PartitionedSystem, prior: Prior, noise: Array, hidden: Array) -
     if not any(named):
         measured = positions(form, form.measured)
         start[np.ix_(measured, measured)] = noise
-    _require_covariance("the prior", start[None])
+    require_definite("the prior", start)
     return start, not any(named)
-
-
-def _require_covariance(what: str, matrices: Array) -> None:
-    """Raise ValueError unless matrices are finite, symmetric and positive definite."""
-    if not np.isfinite(matrices).all() or not np.allclose(matrices, np.swapaxes(matrices, 1, 2)):
-        raise ValueError(f"{what} is not finite and symmetric, as variances are; correct it")
-    if not np.linalg.eigvalsh(matrices).min() > 0:
-        raise ValueError(f"{what} is not positive: what is known exactly has no bound; give positive variances")

@@ -11,7 +11,7 @@ import numpy as np
 from percept_obs.compile import Array, Flags
 from percept_obs.observability.bound import Bound
 from percept_obs.tracking.run import Run
-from percept_obs.validation import checked
+from percept_obs.validation import checked, numbers, positive
 
 
 @checked
@@ -30,8 +30,8 @@ class Efficiency:
 
     Raises
     ------
-    WrongKind
-        If an argument is of another kind.
+    ValueError
+        If an argument is of another kind or shape, or the bound is not positive.
 
     See Also
     --------
@@ -50,6 +50,10 @@ class Efficiency:
     time: Array
     errors: Array
     bound: Array
+
+    def __post_init__(self) -> None:
+        numbers(self.errors, "the errors", "N", len(self.time))
+        positive(bound=numbers(self.bound, "values of bound", len(self.time)).min())
 
     @property
     def rms(self) -> Array:
@@ -103,7 +107,7 @@ def efficiency(runs: Sequence[Run], bound: Bound) -> Efficiency:
     Raises
     ------
     ValueError
-        If there are fewer than two runs, or their truth is not the bound's.
+        If there are fewer than two runs, one stands twice, or their truth is not the bound's.
 
     See Also
     --------
@@ -120,8 +124,8 @@ def efficiency(runs: Sequence[Run], bound: Bound) -> Efficiency:
     True
     """
     truth = bound.recording.truth
-    if len(runs) < 2:
-        raise ValueError(f"{len(runs)} runs tell no mean square; give two or more, with noise of their own")
+    if len(runs) < 2 or len(set(runs)) < len(runs):
+        raise ValueError(f"{len(runs)} runs tell no mean square; give two or more, each once, with noise of their own")
     for number, run in enumerate(runs, 1):
         own = run.recording.truth
         if own is None or truth is None or own.shape != truth.shape or not np.allclose(own, truth):

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, vectorised
 from percept_obs.observability.directions import in_words
-from percept_obs.observability.matching import System, as_form
+from percept_obs.observability.matching import System, as_form, matching_form
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.tracking.linearised import names_of, rate_of
@@ -79,10 +79,11 @@ class Codistribution:
         return tuple(self._at(values).ranks[0].tolist())
 
     def along(self, recording: Recording) -> LieRanks:
-        """Ranks along the truth of a recording."""
+        """Ranks along the truth of a recording, which must fit the form; ValueError if it does not."""
         time = recording.time
         columns: list[ArrayLike] = []
         if self.form.parameters:
+            matching_form(self.form, recording)
             known = np.broadcast_to(recording.motion.known(time), (len(time), len(recording.motion.parameters)))
             surface = [recording.view.values[symbol] for symbol in recording.view.parameters]
             columns = [*known.T, *surface]

@@ -14,7 +14,7 @@ from percept_obs.observability.measures import NOISE_VARIANCE
 from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import POINT
-from percept_obs.validation import checked, limit, positive
+from percept_obs.validation import checked, limit, numbers, positive
 
 Range = tuple[float, float]
 
@@ -42,8 +42,8 @@ class BoundMap:
 
     Raises
     ------
-    WrongKind
-        If an argument is of another kind.
+    ValueError
+        If an argument is of another kind or shape.
 
     See Also
     --------
@@ -67,8 +67,14 @@ class BoundMap:
     seconds: float
     distance: float
 
+    def __post_init__(self) -> None:
+        positive(places=numbers(self.relative, "values of relative", len(self.y2), len(self.y1)).size)
+
     def at(self, y1: float, y2: float) -> float:
-        """Relative standard deviation at the nearest place."""
+        """Relative standard deviation at the nearest place; raises ValueError outside of the map."""
+        for name, place, ends in (("y1", y1, self.y1), ("y2", y2, self.y2)):
+            if not ends.min() - 1e-9 <= place <= ends.max() + 1e-9:
+                raise ValueError(f"{name} is {place}; the map goes from {ends.min():g} to {ends.max():g}")
         return float(self.relative[np.argmin(np.abs(self.y2 - y2)), np.argmin(np.abs(self.y1 - y1))])
 
     def __repr__(self) -> str:

@@ -43,7 +43,7 @@ class Steering:
     Raises
     ------
     ValueError
-        If there is no canonical form with all image coordinates measured.
+        If the velocity is no three symbols, or there is no canonical form with all image coordinates measured.
 
     See Also
     --------
@@ -60,7 +60,7 @@ class Steering:
     """
 
     system: PerspectiveSystem
-    velocity: tuple[sp.Symbol, ...]
+    velocity: tuple[sp.Symbol, sp.Symbol, sp.Symbol]
 
     @cached_property
     def form(self) -> CanonicalForm:
@@ -133,7 +133,8 @@ def steering(system: PerspectiveSystem) -> Steering:
     names = next((each for each in VELOCITIES if set(each) <= set(known)), None)
     if names is None:
         raise ValueError(f"the motion's parameters are {', '.join(known) or 'none'}; take a rigid() or affine() motion")
-    return Steering(system, tuple(known[name] for name in names))
+    first, second, third = (known[name] for name in names)
+    return Steering(system, (first, second, third))
 
 
 @checked

@@ -22,6 +22,7 @@ UNSEEN = 1e-6
 """A direction whose eigenvalue is below this share of the largest one is not seen."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Windows:
     """Symmetric matrices, one for each window: how much of each direction of the state the window shows."""
@@ -162,6 +163,8 @@ def _along(form: CanonicalForm, recording: Recording, expressions: Sequence[sp.E
     for name in form.measured:
         column = source[:, names.index(name)]
         seen = np.isfinite(column)
+        if not seen.any():
+            raise ValueError(f"no sample of {name} was seen; take a part of the recording that shows the point")
         outputs.append(np.interp(time, time[seen], column[seen]))
     known = known_signals(recording.motion, recording.view, time, recording.unit)
     entries = vectorised((*form.x1, *form.parameters), expressions)(*outputs, *known.T)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import sympy as sp
 from sympy.solvers.solveset import NonlinearError
@@ -99,7 +100,7 @@ class Observer:
     Raises
     ------
     ValueError
-        If the estimate or the start has another length or strange symbols, or a gain of the equations is missing.
+        If estimate, start or covariance has another size, or there are strange symbols, or a gain is missing.
 
     See Also
     --------
@@ -130,10 +131,12 @@ class Observer:
 
     def __post_init__(self) -> None:
         _refuse_strangers(self.name, self.form, self.equations, self.estimate, self.start)
+        if self.covariance is not None and self.covariance.rows != len(self.estimate):
+            raise ValueError(f"the covariance has the shape {self.covariance.shape}; expected a row a coordinate")
         if missing := set(self.equations.gains) - set(self.gain_values):
             raise ValueError(f"the {self.name} observer has no Gain for {', '.join(sorted(map(str, missing)))}")
 
-    def with_gains(self, **values: float) -> Observer:
+    def with_gains(self, **values: Any) -> Observer:
         """Observer with other gains, all in range; nothing is compiled again."""
         known = [gain.name for gain in self.gains]
         unknown = sorted(set(values) - set(known))
@@ -230,8 +233,10 @@ class Observer:
         Raises
         ------
         ValueError
-            If measured outputs are needed, or the motion has no numbers.
+            If measured outputs are needed, or the motion has no numbers or is not of the form's kind.
         """
+        if self.form.parameters != (*motion.parameters, *self.form.values):
+            raise ValueError(f"the {self.name} observer is of a form with {self.form.parameters}; give such a motion")
         if self.equations.measured and measured is None:
             outputs = ", ".join(map(str, self.equations.measured))
             raise ValueError(f"the {self.name} observer uses {outputs}; pass measured=, a function of time")
@@ -251,6 +256,8 @@ def _refuse_strangers(
 ) -> None:
     """Refuse an estimate and a start of other lengths than needed, or in symbols that nothing provides."""
     known = {*form.x1, *form.parameters, *equations.gains}
+    if others := {*equations.measured, *equations.parameters} - known:
+        raise ValueError(f"the {name} observer's equations use {others}, which its form has not; derive them from it")
     asked = {*hats(form.coordinates), *first_seen(form.x1)}
     for part, entries, length, given, remedy in (
         ("estimate", estimate, len(form.coordinates), {*equations.state}, "pass estimate="),
@@ -318,8 +325,8 @@ def with_point(observer: Observer) -> Observer:
 
     Raises
     ------
-    WrongKind
-        If an argument is of another kind.
+    ValueError
+        If an argument is of another kind, or the observer has its point already.
 
     See Also
     --------
@@ -334,6 +341,8 @@ def with_point(observer: Observer) -> Observer:
     """
     form, eq = observer.form, observer.equations
     point = (*form.x1, *form.x2)
+    if set(point) & set(eq.state):
+        raise ValueError(f"the {observer.name} observer has its point already; take it as it is")
     reset = (*point, *eq.reset) if eq.reset else ()
     flow = (*form.rate, *eq.flow)
     together = replace(eq, state=(*point, *eq.state), flow=flow, measured=(), update=(), reset=reset)

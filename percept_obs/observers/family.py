@@ -53,6 +53,10 @@ class Option:
     meaning: str
     choices: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        if self.choices and self.value not in self.choices:
+            raise ValueError(f"{self.name} is {self.value!r}, none of its choices {', '.join(map(repr, self.choices))}")
+
     def __str__(self) -> str:
         """Two lines of a docstring."""
         kind = " or ".join(f'"{value}"' for value in self.choices) or type(self.value).__name__
@@ -166,6 +170,8 @@ class Family:
     for_structure: bool = False
 
     def __post_init__(self) -> None:
+        for name, kind in (("name", str), ("gains", tuple[Gain, ...]), ("options", tuple[Option, ...])):
+            refuse_kind("family", name, getattr(self, name), kind)
         names = {name: getattr(self.derive, name) for name in ("__name__", "__qualname__", "__module__")}
         set_fields(self, **names, __doc__=self._docstring(), __signature__=self._signature())
 
@@ -181,6 +187,7 @@ class Family:
 
     def objection(self, form: PartitionedSystem) -> ValueError | None:
         """Error that a call with this form raises; None if there is an observer of it."""
+        refuse_kind(self.key, "form", form, PartitionedSystem)
         if self.any_form:
             return None
         if form.culprits:

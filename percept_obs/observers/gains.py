@@ -40,7 +40,7 @@ class Gain:
     Raises
     ------
     ValueError
-        If the value is not a finite number, or does not fulfil the condition, or the name is none in Python.
+        If the value is not finite, or does not fulfil the condition, or the name or the range makes no sense.
 
     See Also
     --------
@@ -71,7 +71,10 @@ class Gain:
             raise ValueError(f"a gain has the name {self.name!r}; give it a name in Python, such as 'gain'")
         refuse_kind("the gain", "symbol", self.symbol, sp.Symbol)
         refuse_names([self.symbol], self.name)
-        refuse_kind("the gain", self.name, self.value, float)
+        for label, number in ((self.name, self.value), ("low", self.low), ("high", self.high)):
+            refuse_kind("the gain", label, number, float)
+        if not self.low < self.high:
+            raise ValueError(f"{self.name} is to be explored from {self.low} to {self.high}; give the lower end first")
         value = float(self.value)
         set_fields(self, value=value)
         if not math.isfinite(value):
@@ -106,4 +109,6 @@ def grid(**values: Sequence[float]) -> tuple[dict[str, float], ...]:
     >>> grid(gain=(2, 10), bound=(5,))
     ({'gain': 2, 'bound': 5}, {'gain': 10, 'bound': 5})
     """
+    if empty := [name for name, several in values.items() if not len(several)]:
+        raise ValueError(f"{', '.join(empty)} has no values to try; give at least one, or leave it out")
     return tuple(dict(zip(values, each, strict=True)) for each in product(*values.values()))

@@ -9,7 +9,7 @@ from sympy.logic.boolalg import Boolean
 from percept_obs.compile.equations import Expressions, Symbols
 from percept_obs.observers.gains import Gain
 from percept_obs.system.forms import CanonicalForm
-from percept_obs.validation import checked
+from percept_obs.validation import checked, matrix
 
 M, gamma, sigma2 = sp.symbols("M gamma sigma^2", real=True)
 
@@ -27,6 +27,7 @@ NOISE_GAIN = Gain(
 """Gain of `noise_bias`."""
 
 
+@checked
 def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
     """Return symbols of the estimates: yhat1 for y1.
 
@@ -48,6 +49,7 @@ def hats(symbols: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
     return tuple(sp.Symbol(re.sub(r"(\d*)$", r"hat\1", s.name, count=1), real=True) for s in symbols)
 
 
+@checked
 def first_seen(x1: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
     """Return symbols s_y1 for y1 that are 1 where an output starts from its first sample, 0 where its start is set.
 
@@ -69,6 +71,7 @@ def first_seen(x1: Sequence[sp.Symbol]) -> tuple[sp.Symbol, ...]:
     return tuple(sp.Symbol(f"s_{output.name}", real=True) for output in x1)
 
 
+@checked
 def output_injection(
     form: CanonicalForm,
     correction: sp.ImmutableMatrix,
@@ -104,13 +107,14 @@ def output_injection(
     >>> output_injection(form, innovation(form), 2, 3)[0]
     a11*y1 + a12*y2 + a13 - a31*y1**2 - a32*y1*y2 - a33*y1 + 2*y1 - 2*yhat1 + yhat3*(b1 - b3*y1)
     """
-    x2_hat = hats(form.x2)
+    x2_hat, correction = hats(form.x2), matrix(correction, "the correction", len(form.x1), 1)
     injected = form.w * correction - (sp.zeros(len(x2_hat), 1) if bias is None else bias)
     measured_rate = measured_gain * correction + form.w.T * sp.ImmutableMatrix(x2_hat) + form.phi
     hidden_rate = hidden_gain * injected + form.g.subs(dict(zip(form.x2, x2_hat, strict=True)))
     return (*measured_rate, *hidden_rate)
 
 
+@checked
 def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
     """Return measured outputs minus their estimates, x1 - x1hat, shape (n1, 1).
 
@@ -132,6 +136,7 @@ def innovation(form: CanonicalForm) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix(form.x1) - sp.ImmutableMatrix(hats(form.x1))
 
 
+@checked
 def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions]:
     """Return the reset condition and the reset that shrink an estimate to the bound M once its norm reaches gamma M.
 
@@ -153,6 +158,8 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
     >>> kept_within(hats(sp.symbols("y1 y3")), hats(sp.symbols("y3,")))
     (yhat3**2 >= M**2*gamma**2, (yhat1, M*yhat3/Abs(yhat3)))
     """
+    if not estimate or not set(estimate) <= set(state):
+        raise ValueError(f"the estimate is {estimate}; give symbols of the state {state}, at least one")
     squared = sum(hat**2 for hat in estimate)
     shrink = M / sp.sqrt(squared)
     return sp.Ge(squared, (gamma * M) ** 2), tuple(shrink * s if s in estimate else s for s in state)
@@ -187,6 +194,7 @@ def noise_bias(form: CanonicalForm, correction: sp.ImmutableMatrix) -> sp.Immuta
     [-a32*sigma^2*(a11 - 2*a31*y1 - a33)],
     [ -b3*sigma^2*(a11 - 2*a31*y1 - a33)]])
     """
+    correction = matrix(correction, "the correction", len(form.x1), 1)
     # the derivative of a sign is 0 but at single instants
     smooth = {x: correction.diff(x).replace(sp.DiracDelta, lambda *_: sp.S.Zero) for x in form.x1}
     return sigma2 * sum((form.w.diff(x) * smooth[x] for x in form.x1), sp.zeros(len(form.x2), 1))

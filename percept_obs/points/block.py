@@ -9,6 +9,7 @@ import sympy as sp
 
 from percept_obs.compile import Printed, function_source
 from percept_obs.system.surfaces import POINT, ImagingSurface
+from percept_obs.validation import checked
 
 
 class NotLinear(ValueError):
@@ -66,6 +67,7 @@ class PointBlock:
         return {sp.factor(value): count for value, count in self.S.eigenvals().items()}
 
 
+@checked
 @lru_cache(maxsize=64)
 def point_block(surface: ImagingSurface) -> PointBlock:
     """Return one point's block, derived from the surface.

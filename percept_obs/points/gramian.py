@@ -39,6 +39,7 @@ VERDICTS = MappingProxyType(
 """Sentences about condition (14), also of live labs."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Gramian(Windows):
     """The integral of Phi^T S Phi over windows, from the state at their beginnings.

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags
 from percept_obs.system.signal import Signal
-from percept_obs.validation import checked, numbers
+from percept_obs.tracking.following import require_definite
+from percept_obs.validation import checked, numbers, positive
 
 DIFFERENCE = 1e-5
 """Half of the time, in seconds, over which a scheduled P is differenced."""
@@ -79,41 +80,48 @@ class LyapunovMatrix:
         """Pairs of states that P may couple, shape (n, n)."""
         if self.schedule is None:
             return np.asarray((self.start != 0) | (self.decrease != 0))
-        if callable(self.schedule.samples):
+        if callable(samples := self._given.samples):
             return np.ones(self.start.shape, dtype=bool)
-        return np.any([_square(row, len(self.start)) != 0 for row in self.schedule.samples], axis=0)
+        return np.any([_square(row, len(self.start)) != 0 for row in samples], axis=0)
 
     def sized(self, states: int) -> LyapunovMatrix:
         """Return a copy for some states, with matrices in place of numbers, which must be symmetric and definite."""
+        positive(states=states)
         if self.schedule is not None:
             rows = self.schedule.at(0.0) if callable(self.schedule.samples) else self.schedule.samples
             for k, row in enumerate(rows):
                 if row.size not in (1, states**2):
                     raise ValueError(f"P is scheduled with {row.size} entries; expected 1 or {states} x {states}")
-                _definite(_square(row, states), f"P, sample {k},")
+                require_definite(f"P, sample {k},", _square(row, states))
             return replace(self, start=np.eye(states), decrease=np.zeros((states, states)))
         start, decrease = (_square(value, states) for value in (self.start, self.decrease))
-        _definite(start, "P")
-        _definite(decrease, "the decrease of P", semi=True)
+        require_definite("P", start)
+        require_definite("the decrease of P", decrease, semi=True)
         return replace(self, start=start, decrease=decrease)
 
     def at(self, times: ArrayLike) -> Array:
-        """A given P at the given times, shape (T, n, n), or (1, n, n) when constant."""
-        assert self.schedule is not None
-        rows = self.schedule.at(times)
+        """A given P at the given times, shape (T, n, n), or (1, n, n) when constant; ValueError if it is computed."""
+        rows = self._given.at(times)
         return np.stack([_square(row, len(self.start)) for row in rows])
 
     def rate(self, times: ArrayLike) -> Array:
-        """Derivative of a given P at the given times, shape (T, n, n)."""
-        assert self.schedule is not None
-        times = np.atleast_1d(np.asarray(times, dtype=float))
-        if self.schedule.constant:
+        """Derivative of a given P at the given times, shape (T, n, n); ValueError if it is computed."""
+        given, times = self._given, np.atleast_1d(np.asarray(times, dtype=float))
+        if given.constant:
             return np.zeros((len(times), *self.start.shape))
         low, high = times - DIFFERENCE, times + DIFFERENCE
-        if self.schedule.times is not None:
+        if given.times is not None:
             # samples are not known beyond their ends, where the difference becomes one-sided
-            low, high = (np.clip(t, self.schedule.times[0], self.schedule.times[-1]) for t in (low, high))
+            low, high = (np.clip(t, given.times[0], given.times[-1]) for t in (low, high))
         return (self.at(high) - self.at(low)) / (high - low)[:, None, None]
+
+    @property
+    def _given(self) -> Signal:
+        """The schedule; raises ValueError if there is none, or no size."""
+        if self.schedule is None or self.start is None:
+            why = "is computed while the observer runs" if self.computed else "has no size yet: sized(states) gives one"
+            raise ValueError(f"the {self.name} {why}")
+        return self.schedule
 
 
 @checked
@@ -248,12 +256,3 @@ def _square(value: ArrayLike, states: int) -> Array:
     if array.size != states**2:
         raise ValueError(f"P has shape {array.shape}; expected a number or {(states, states)}")
     return array.reshape(states, states)
-
-
-def _definite(matrix: Array, what: str, semi: bool = False) -> None:
-    """Raise ValueError unless a matrix is symmetric and positive (semi-)definite."""
-    if not np.isfinite(matrix).all() or np.abs(matrix - matrix.T).max() > 1e-9 * np.abs(matrix).max(initial=1e-300):
-        raise ValueError(f"{what} must be a finite symmetric matrix")
-    least = float(np.linalg.eigvalsh(matrix)[0])
-    if least < -1e-12 or (least <= 0 and not semi):
-        raise ValueError(f"{what} has the eigenvalue {least:.3g}; it must be positive {'semi' if semi else ''}definite")

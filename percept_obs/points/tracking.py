@@ -16,7 +16,7 @@ from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.points.run import PointsRun
 from percept_obs.system.motion import Motion
-from percept_obs.tracking.following import DoesNotFit, follow
+from percept_obs.tracking.following import DoesNotFit, follow, require_definite
 from percept_obs.tracking.grid import TimeGrid
 from percept_obs.validation import checked, numbers, positive
 
@@ -163,8 +163,7 @@ def _follow(task: _Task, states: Indices, points: Indices, x: Array) -> tuple[Ar
         rows = slice(EACH * steps.start, EACH * steps.stop + 1)
         if not matrix.computed and (first == stops[0] or not matrix.constant):
             given = matrix.at(grid.instants[rows])[:, block[0], block[1]]
-            if not (np.isfinite(given).all() and (np.linalg.eigvalsh((given + given.swapaxes(1, 2)) / 2) > 0).all()):
-                raise ValueError("P is singular or not positive definite at some time; it must stay positive definite")
+            require_definite("P at some time", (given + given.swapaxes(1, 2)) / 2)
             inverses = np.asarray(np.linalg.inv(given), dtype=float)
         known = task.coefficients if len(task.coefficients) == 1 else task.coefficients[rows]
         images = task.images[steps][:, :, points]

@@ -21,7 +21,7 @@ from percept_obs.recording.track_table import fields_of_recordings, runs
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
-from percept_obs.system.view import View
+from percept_obs.system.view import View, refuse_several
 from percept_obs.validation import checked, load_pandas
 
 USUAL_SPEED = 0.6
@@ -244,6 +244,7 @@ class Recording:
     @property
     def imaging_surface(self) -> ImagingSurface:
         """View of one point, with rays and distances; raises ValueError if it is no imaging surface."""
+        refuse_several("this", self.view)
         if not isinstance(self.view, ImagingSurface):
             raise ValueError(f"this needs image coordinates of one point, but the recording shows the {self.view.name}")
         return self.view

@@ -17,7 +17,7 @@ from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
 from percept_obs.recording.footage import Footage
-from percept_obs.studies.comparison import Columns, Comparison, Estimate, Follow, error_at, rows_of
+from percept_obs.studies.comparison import ABOUT, Columns, Comparison, Estimate, Follow, error_at, rows_of
 from percept_obs.studies.least_squares import moving_window_least_squares
 from percept_obs.studies.tuning import MOST, STARTS, best_setting, tune_by_likelihood
 from percept_obs.system.forms import PartitionedSystem
@@ -234,6 +234,8 @@ def all_observers(
         judged = {id(each) for each in evenly(theirs, MOST_JUDGED)}
         asked |= {f"claimed {seconds:g} s": partial(_claim, seconds=seconds) for seconds in lasting}
         asked["trusted"] = lambda run: float(run.trust().trusted) if id(run.recording) in judged else math.nan
+    if clash := {*(columns or {})} & {*ABOUT, *asked, "cost"}:
+        raise ValueError(f"columns has {', '.join(sorted(clash))}, which the table has already; take another name")
     asked |= columns or {}
 
     def measures(run: Run) -> dict[str, float]:

@@ -20,6 +20,7 @@ from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.signal import from_the_start, slack_of
+from percept_obs.system.view import refuse_several
 from percept_obs.tracking.following import AnyObserver, StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
@@ -51,6 +52,7 @@ MOST = 0.9
 """Quantile of errors at a time that stands next to their median."""
 
 
+@checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
     """Runs of observers on recordings; a notebook shows one line an observer.
@@ -91,6 +93,10 @@ class Comparison:
     left_out: Mapping[str, str] = field(default_factory=dict)
     start: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if missing := {*ABOUT, "cost"} - {"gains", "at_edge"} - {*self.table}:
+            raise ValueError(f"the table has no column {', '.join(sorted(missing))}, as those of compare() have")
 
     @property
     def summary(self) -> pd.DataFrame:
@@ -258,7 +264,7 @@ def compare(
     Raises
     ------
     ValueError
-        If there are no recordings or no observers, a recording has no truth, or an observer does not fit.
+        If recordings or observers are none or do not fit, one has no truth or several points, or a column is taken.
 
     See Also
     --------
@@ -279,6 +285,10 @@ def compare(
         observers = dict(zip(names, observers, strict=True))
     if not len(recordings) or not observers:
         raise ValueError(f"{len(recordings)} recordings and {len(observers)} observers: at least one of each is needed")
+    for recording in recordings:
+        refuse_several("a comparison", recording.view)
+    if clash := {*(columns or {})} & {*ABOUT, "outcome", "settling_time", "final", "rms", "worst", "cost"}:
+        raise ValueError(f"columns has {', '.join(sorted(clash))}, which the table has already; take another name")
     settings = {"language": choose(None, sum(len(recording.time) for recording in recordings))} | settings
     follow = {label: partial(track, observer=each, start=start, **settings) for label, each in observers.items()}
     brief = recordings[0].between(*recordings[0].time[:2].tolist())
@@ -374,8 +384,8 @@ def relative_distance_errors(
     each = [(run.recording.source, errors_of(run, after, reference, absence, points)) for run in runs]
     errors = [error for _, found in each for error in found]
     if not errors:
-        sources = " or ".join(repr(source) for source, _ in each)
-        raise ValueError(f"no sighting in the recording {sources} lasts {after} s; after must be shorter")
+        sources = " or ".join(repr(source) for source, _ in each) or "of no run at all"
+        raise ValueError(f"no sighting in the recording {sources} lasts {after} s; give a run, or a shorter after")
     return np.array(errors)
 
 

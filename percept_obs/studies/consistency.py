@@ -94,6 +94,9 @@ class Consistency:
     samples: int
     whitened: Array
 
+    def __post_init__(self) -> None:
+        positive(outputs=self.outputs, samples=self.samples)
+
     @property
     def averages(self) -> Array:
         """Mean of each NIS and the N - 1 before it, shape (K - N + 1,)."""

@@ -11,11 +11,13 @@ from percept_obs.observability.maps import displacements
 from percept_obs.recording import NO_NOISE, Camera
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
+from percept_obs.tracking.doubts import FAR
 from percept_obs.validation import checked, limit, positive
 
 __all__ = ["FieldBound", "field_bound"]
 
 
+@checked
 @dataclass(frozen=True, eq=False, repr=False)
 class FieldBound:
     """The Cramer-Rao bound of the distance over a field of view.
@@ -59,9 +61,12 @@ class FieldBound:
         return float(np.nanmedian(self.relative))
 
     def within(self, low: float, high: float) -> float:
-        """Median over the directions between two angles from the optical axis, in radians."""
+        """Median over the directions between two angles from the optical axis, in radians; ValueError without any."""
         away = np.hypot(*np.meshgrid(self.angles, self.angles))
-        return float(np.nanmedian(self.relative[(away >= low) & (away <= high)]))
+        inside = self.relative[(away >= low) & (away <= high)]
+        if not np.isfinite(inside).any():
+            raise ValueError(f"no direction lies between {low} and {high} rad; they go up to {self.angles[-1]:.3g} rad")
+        return float(np.nanmedian(inside))
 
     def __repr__(self) -> str:
         return (
@@ -143,15 +148,18 @@ def field_bound(
     positive(angle=1.0 if angle is None else angle)
     if motion.signal is None:
         raise ValueError(f"the {motion.name} motion has no numbers; give it some, such as affine(A, b)")
-    if not 0 < field_of_view <= surface.field_of_view + 1e-6:
+    sees = 0 < field_of_view <= surface.field_of_view + 1e-6
+    if not (sees and pixel(surface, field_of_view, across=1.0) < FAR):
         raise ValueError(
             f"the field of view is {np.degrees(field_of_view):.4g} degrees; the {surface.name} sees "
-            f"{np.degrees(surface.field_of_view):.4g} around its optical axis: take a smaller one, in radians"
+            f"{np.degrees(surface.field_of_view):.4g} around its optical axis at most: take a smaller one, in radians"
         )
     names = [symbol.name for symbol in surface.image_coordinates]
     measured = tuple(names) if measured is None else tuple(measured)
     if not measured or not set(measured) <= set(names):
         raise ValueError(f"the {surface.name} has the outputs {', '.join(names)}; {measured} cannot be measured")
+    if size < 3:
+        raise ValueError(f"the size is {size}; three directions are needed, to both sides and on the axis")
     times = Camera(period, NO_NOISE).times(seconds)
     limit(len(times) * size**2, "directions and samples", "take fewer directions or a longer period", 1e7)
     angles = field_of_view / 2 * np.linspace(-1, 1, size)

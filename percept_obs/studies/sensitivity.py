@@ -16,6 +16,7 @@ from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.system.motion import TIME, Motion
 from percept_obs.system.signal import Signal
+from percept_obs.system.view import refuse_several
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
 from percept_obs.validation import checked
@@ -136,6 +137,7 @@ def sensitivity(
     >>> found.derivatives.shape
     (501, 3, 2)
     """
+    refuse_several("the observer", recording.view)
     motion = recording.motion
     moved = _moved(motion, entries)
     run = track(recording, observer, start, **settings)

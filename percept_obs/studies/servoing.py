@@ -269,6 +269,8 @@ def servo(
     poses = np.asarray(starts, dtype=float)
     if poses.ndim != 2 or poses.shape[1] != 6 or not np.isfinite(poses).all():
         raise ValueError(f"starts have shape {poses.shape}; give finite rows of a translation and a rotation, (S, 6)")
+    if (most := np.linalg.norm(poses[:, 3:], axis=1).max(initial=0)) > 2 * math.pi:
+        raise ValueError(f"a start turns by {most:.3g} rad, more than once around; were degrees meant?")
     positive(ratio=ratio, gain=gain, duration=duration)
     observed = depth if isinstance(depth, Observer) else None
     if observed is None and depth not in ("true", "constant"):

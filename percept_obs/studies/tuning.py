@@ -15,6 +15,7 @@ from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.studies.comparison import Follow, relative_distance_errors
 from percept_obs.tracking.following import AnyObserver, StepTooLong
+from percept_obs.tracking.run import Run
 from percept_obs.validation import bar, checked
 
 __all__ = ["Tuned", "best_setting", "tune_by_likelihood"]
@@ -60,7 +61,7 @@ def best_setting(
     Raises
     ------
     ValueError
-        If there are no recordings, observers or times, or no recording lasts as long.
+        If there are no recordings, observers or times, no recording lasts as long, or another observer is run.
 
     See Also
     --------
@@ -85,11 +86,20 @@ def best_setting(
     def score(observer: Observer) -> float:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", StepTooLong)  # a chattering candidate has large errors, so it is not chosen
-            runs = [follow(recording, observer) for recording in recordings]
+            runs = _followed(recordings, observer, follow)
         total = float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
         return math.inf if math.isnan(total) else total  # a run that diverged is never the best
 
     return candidates[int(np.argmin([score(each) for each in bar(candidates, "candidates")]))]
+
+
+def _followed(recordings: Sequence[Recording], observer: AnyObserver, follow: Follow) -> list[Run]:
+    """Runs of an observer; raise ValueError if they are of another one."""
+    runs = [follow(recording, observer) for recording in recordings]
+    chosen = {gain.name: gain.value for gain in getattr(observer, "gains", ()) if gain.given}
+    if chosen and any(chosen.items() - {(gain.name, gain.value) for gain in run.observer.gains} for run in runs):
+        raise ValueError("follow runs another observer than it is given; make it track(recording, observer)")
+    return runs
 
 
 @checked
@@ -158,7 +168,7 @@ def tune_by_likelihood(
     Raises
     ------
     ValueError
-        If there are no recordings or no gains, a range is not one of positive values, or every setting diverges.
+        If there are no recordings or gains, a range is not positive, follow runs another observer, or all diverge.
 
     See Also
     --------
@@ -192,7 +202,7 @@ def tune_by_likelihood(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", StepTooLong)  # what chatters is not chosen
             filtered = observer.with_gains(**gains_at(place, zero))
-            runs = [follow(recording, filtered) for recording in recordings]
+            runs = _followed(recordings, filtered, follow)
         if any(run.diverged_at is not None for run in runs):
             return math.inf
         return -float(sum(np.nansum(run.log_likelihood) for run in runs))

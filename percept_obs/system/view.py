@@ -17,6 +17,12 @@ DISTANCE = "the distance"
 """Quantity that verdicts judge; labs use the same words."""
 
 
+def refuse_several(what: str, view: View, error: type[ValueError] = ValueError) -> None:
+    """Raise an error where something of one point is asked of a view of several."""
+    if view.point_shape:
+        raise error(f"{what} is of one point; the recording shows {view.name}, for luenberger(recording.view)")
+
+
 class View(Protocol):
     """Measured and hidden coordinates of one or several points.
 

@@ -21,10 +21,11 @@ from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
 from percept_obs.system.state_view import StateView
+from percept_obs.system.view import refuse_several
 from percept_obs.tracking.grid import Hold, TimeGrid, known_signals, time_grid
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.smoothing import Belief, doubts_of, once_observable
-from percept_obs.validation import Kind, checked, limit, refuse_kind, warn
+from percept_obs.validation import Kind, checked, limit, numbers, positive, refuse_kind, warn
 
 Start = Mapping[str, float] | Sequence[float] | None
 
@@ -43,7 +44,7 @@ class DoesNotFit(ValueError):
     >>> track(record(scenarios.ma2005_eq35(sphere()), 1), flat)  # doctest: +ELLIPSIS
     Traceback (most recent call last):
     ...
-    percept_obs.tracking.following.DoesNotFit: the system was made for the pinhole surface ...
+    percept_obs.tracking.following.DoesNotFit: the system was made for the pinhole surface, ...
     """
 
 
@@ -143,11 +144,9 @@ def track(
         raise ValueError(f"the hold {hold!r} is none of 'zero', 'first' and 'exact'")
     if hold == "exact" and recording.signal is None:
         raise DoesNotFit("the exact signal between samples is known in simulations only; hold them 'zero' or 'first'")
-    for name, value in (("step", step), ("longest_hold", longest_hold)):
-        if not value > 0:
-            raise ValueError(f"the {name} is {value}; it must be positive, in seconds")
-    if not math.isfinite(step):
-        raise ValueError(f"the step is {step} s; it must be finite")
+    positive(step=step)
+    if not longest_hold > 0:
+        raise ValueError(f"the longest_hold is {longest_hold}; it must be positive, in seconds")
     length = float(recording.elapsed[-1])
     form, own = observer.form, getattr(observer, "equations", None)
     states = len(own.state) or len(form.coordinates) if own is not None else int(form.states)
@@ -216,12 +215,12 @@ def _state_of(observer: Observer, belief: Belief, scale: Array) -> Array:
     if observer.covariance is None or not {*observer.estimate, *observer.covariance} >= {*observer.equations.state}:
         raise DoesNotFit(f"the {observer.name} observer cannot start from a covariance; the extended Kalman filter can")
     n = len(observer.estimate)
-    shapes = np.shape(belief.estimate), np.shape(belief.covariance)
-    if shapes != ((n,), (n, n)) or not np.isfinite(belief.covariance).all() or not np.isfinite(belief.estimate).all():
-        raise ValueError(
-            f"the belief has the shapes {shapes[0]} and {shapes[1]}; expected finite ({n},) and ({n}, {n})"
-        )
-    estimate, covariance = belief.estimate * scale, belief.covariance * np.outer(scale, scale)
+    estimate = numbers(belief.estimate, "values of the belief", n)
+    P = numbers(belief.covariance, "values of the belief's covariance", n, n)
+    require_definite("the belief's covariance", P, semi=True)
+    if not np.isfinite(estimate).all():
+        raise ValueError("the belief's estimate is not finite; correct it")
+    estimate, covariance = estimate * scale, P * np.outer(scale, scale)
     at = dict(zip((*observer.estimate, *observer.covariance), [*estimate, *covariance.ravel()], strict=True))
     return np.array([at[symbol] for symbol in observer.equations.state])
 
@@ -236,15 +235,15 @@ def _once_observable(observer: Observer, grid: TimeGrid, believed: Motion, langu
         observer, unobservable=(Unobservable(sp.false, f"the samples did not tell {recording.view.judged} yet"),)
     )
     estimate, states = np.full((count, len(form.coordinates)), np.nan), np.full((count, len(observer.start)), np.nan)
-    found = Run(recording, late, estimate, states, None, grid.hold, np.empty(0), (np.arange(count) < first).astype(int))
-    if belief is None:
-        return found
-    at = grid.index[first]
-    rest = recording.between(recording.time[first], recording.time[-1])
-    later = TimeGrid(rest, grid.times[at:], grid.index[first:] - at, grid.hold, grid.longest_hold)
-    run = _follow_one_point(observer, later, belief, believed, language)
-    estimate[first:], states[first:] = run.estimate, run.state
-    return replace(found, diverged_at=run.diverged_at, resets=run.resets)
+    diverged_at, resets = None, np.empty(0)
+    if belief is not None:
+        at = grid.index[first]
+        rest = recording.between(recording.time[first], recording.time[-1])
+        later = TimeGrid(rest, grid.times[at:], grid.index[first:] - at, grid.hold, grid.longest_hold)
+        run = _follow_one_point(observer, later, belief, believed, language)
+        estimate[first:], states[first:], diverged_at, resets = run.estimate, run.state, run.diverged_at, run.resets
+    unknown = (np.arange(count) < first).astype(int)
+    return Run(recording, late, estimate, states, diverged_at, grid.hold, resets, unknown)
 
 
 def _estimates(
@@ -343,11 +342,12 @@ def _require_fit(grid: TimeGrid, observer: Observer, believed: Motion) -> None:
 def require_match(form: PartitionedSystem, recording: Recording, motion: Motion) -> None:
     """Raise DoesNotFit unless a form has the recording's view, its outputs, and the parameters of a motion."""
     view = recording.view
+    refuse_several("the form", view, DoesNotFit)
     if form.view is None or not form.view.fits(view):
+        made, seen = (f" {dict(values)}" if values else "" for values in (form.values, view.values))
         raise DoesNotFit(
-            f"the system was made for {f'the {form.view.name} surface' if form.view else 'no view'} "
-            f"{dict(form.values)}, but the recording was seen as {view.name} {dict(getattr(view, 'values', {}))}; "
-            "use the same view"
+            f"the system was made for {f'the {form.view.name} surface' if form.view else 'no view'}{made}, but the "
+            f"recording was seen as {view.name}{seen}; use the same view"
         )
     missing = [name for name in form.measured if name not in recording.names]
     if missing:
@@ -361,6 +361,16 @@ def require_match(form: PartitionedSystem, recording: Recording, motion: Motion)
             f"the system was derived for a motion with {', '.join(map(str, form.parameters)) or 'numbers only'}, the "
             f"given one has {', '.join(map(str, expected)) or 'numbers only'}; use the same kind of motion for both"
         )
+
+
+def require_definite(what: str, matrices: Array, semi: bool = False) -> None:
+    """Raise ValueError unless matrices are finite, symmetric and positive (semi-)definite."""
+    largest = np.abs(matrices).max(initial=1e-300)
+    if not np.isfinite(matrices).all() or np.abs(matrices - matrices.swapaxes(-1, -2)).max() > 1e-6 * largest:
+        raise ValueError(f"{what} must be a finite symmetric matrix")
+    least = float(np.linalg.eigvalsh(matrices).min())
+    if least < -1e-9 * largest or (least <= 0 and not semi):
+        raise ValueError(f"{what} has the eigenvalue {least:.3g}; it must be positive {'semi' if semi else ''}definite")
 
 
 def named_start(start: Start, coordinates: Symbols) -> dict[str, float]:

@@ -48,7 +48,7 @@ class FunctionObserver:
     Raises
     ------
     ValueError
-        In `track`, if a function fails or returns another shape; a state that is not finite has diverged.
+        In `track`, if a function fails, or returns another shape or a negative variance; what is not finite diverged.
 
     See Also
     --------
@@ -158,6 +158,8 @@ def _follow_by_function(
         estimates[k] = row
         if claims is not None:
             claims[k] = asked("covariance", (n, n), state)
+            if (np.diagonal(claims[k]) < 0).any():
+                raise ValueError(f"covariance of the {observer.name} observer has a negative variance {when}")
     none, seen = np.empty(0), np.zeros(len(estimates), dtype=int)
     return FunctionRun(
         recording, observer, estimates / recording.scale, estimates, diverged, grid.hold, none, seen, claims
@@ -192,6 +194,8 @@ def transition(form: PartitionedSystem) -> Callable[[Array, float, Mapping[str, 
     function = vectorised((*form.coordinates, *form.parameters), [rates[symbol] for symbol in form.coordinates])
 
     def moved(coordinates: Array, seconds: float, known: Mapping[str, float]) -> Array:
+        if missing := [symbol.name for symbol in form.parameters if symbol.name not in known]:
+            raise ValueError(f"known has no {', '.join(missing)}; pass on what the step is given")
         values = [known[symbol.name] for symbol in form.parameters]
 
         def rate(instant: int, x: Array) -> Array:

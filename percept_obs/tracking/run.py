@@ -28,7 +28,7 @@ from percept_obs.tracking.information import (
 )
 from percept_obs.tracking.smoothing import doubts_of
 from percept_obs.tracking.verdict import BLIND, REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, number, outcome
-from percept_obs.validation import checked
+from percept_obs.validation import checked, numbers
 
 
 @checked
@@ -57,8 +57,8 @@ class Run:
 
     Raises
     ------
-    WrongKind
-        If an argument is of another kind.
+    ValueError
+        If an argument is of another kind or shape.
 
     See Also
     --------
@@ -85,6 +85,10 @@ class Run:
     unobservable: Indices
     remedy: ClassVar[str] = REMEDY
     """Advice if it diverged."""
+
+    def __post_init__(self) -> None:
+        for name, columns in (("estimate", len(self.view.coordinates)), ("state", "s")):
+            numbers(getattr(self, name), f"values of {name}", len(self.time), columns).setflags(write=False)
 
     @property
     def time(self) -> Array:
@@ -174,8 +178,8 @@ class Run:
     @cached_property
     def _residual_covariance(self) -> tuple[Array, Array]:
         """Eigenvalues, NaN unless positive, and eigenvectors of the residuals' covariance R - P after an update."""
-        measured = self._columns(self.observer.form.measured)
-        claimed = self.covariance[:, measured][:, :, measured]
+        covariance, measured = self.covariance, self._columns(self.measured)
+        claimed = covariance[:, measured][:, :, measured]
         residual = self._noise_variance * np.eye(len(measured)) - claimed
         finite = np.asarray(np.isfinite(residual).all(axis=(1, 2)))
         values, vectors = np.linalg.eigh(np.where(finite[:, None, None], residual, np.eye(len(measured))))
@@ -203,8 +207,8 @@ class Run:
         ValueError
             If there is no truth or no such coordinate, or the observer claims no covariance.
         """
-        columns = self._columns(names)
-        claimed = self.covariance[:, columns][:, :, columns]
+        covariance, columns = self.covariance, self._columns(names)
+        claimed = covariance[:, columns][:, :, columns]
         finite = np.asarray(np.isfinite(claimed).all(axis=(1, 2)) & (np.linalg.det(claimed) != 0))
         claimed = np.where(finite[:, None, None], claimed, np.nan)
         error = self.error[:, columns, None]
@@ -439,7 +443,7 @@ class Run:
             raise ValueError(f"there is no coordinate {', '.join(unknown)}; there are {', '.join(known)}")
         if len(set(names)) < len(names):
             raise ValueError(f"a coordinate stands twice in {', '.join(names)}; name each once")
-        return [known.index(name) for name in names or self.observer.form.hidden]
+        return [known.index(name) for name in names or getattr(self.observer.form, "hidden", known)]
 
     def __repr__(self) -> str:
         return f"<Run of the {self.observer.name} observer on {self.recording.source}: {self.verdict()}>"

@@ -16,6 +16,7 @@ from percept_obs.system.forms import PartitionedSystem
 from percept_obs.system.motion import Motion
 from percept_obs.system.state_view import StateView
 from percept_obs.tracking.linearised import linearisation, outputs_of, positions
+from percept_obs.validation import checked
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class Limits:
 LIMITS = Limits()
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Belief:
     """Start of a filter: an estimate of all coordinates at the first sample, that sample in it, and its covariance.

@@ -193,7 +193,8 @@ def _sequence(origin: type, inside: tuple[Any, ...]) -> Kind:
             return len(each) == len(inside) and all(kind_of(a).fits(e) for a, e in zip(inside, each, strict=True))
         return all(map(entry.fits, value))
 
-    return Kind(f"a sequence, each entry {entry.label}", fits, entry.example, entries=(entry,))
+    size = f" of {len(inside)}" if origin is tuple and inside[-1] is not Ellipsis else ""
+    return Kind(f"a sequence{size}, each entry {entry.label}", fits, entry.example, entries=(entry,))
 
 
 def _instance(cls: Any) -> Kind:

@@ -148,13 +148,13 @@ def test_scatter_is_that_of_repeated_sets_of_runs():
 
 test_what_makes_no_sense_is_refused = refuses(
     lambda arguments: cramer_rao(**{"recording": RECORDING, "system": BOTH} | arguments),
-    ({"noise_variance": 0.0}, "not positive"),
-    ({"noise_variance": np.nan}, "not finite"),
+    ({"noise_variance": 0.0}, "must be positive definite"),
+    ({"noise_variance": np.nan}, "finite symmetric"),
     ({"noise_variance": [1, 1, 1]}, r"expected a number, \(2,\)"),
     ({"prior": {"y7": 1}}, "the prior names y7"),
     ({"prior": {"y1": 1}}, "all measured outputs or none"),
     ({"prior": np.eye(2)}, r"expected \(3, 3\)"),
-    ({"prior": -np.eye(3)}, "not positive"),
+    ({"prior": -np.eye(3)}, "must be positive definite"),
     ({"doubt": -1.0}, "finite and not negative"),
     ({"doubt": 1e308}, "too large or too small"),
     ({"doubt": {"c": 1.0}}, "no c to doubt"),

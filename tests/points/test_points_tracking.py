@@ -273,7 +273,7 @@ def test_seeds_repeat(seed):
     [
         ({"start": [0.0]}, r"start has shape \(1,\); expected 6 finite numbers: X1_x"),
         ({"start": [np.nan] * 6}, "6 finite numbers"),
-        ({"step": np.inf}, "must be finite"),
+        ({"step": np.inf}, "positive and finite"),
         ({"hold": "second"}, "none of 'zero', 'first' and 'exact'"),
         ({"language": "fortran"}, "neither 'python' nor 'numba'"),
     ],

@@ -8,7 +8,7 @@ import pytest
 from examples import BOTH, NOISY, ONE, ZERO
 from refusals import refuses
 
-from percept_obs import Run, check_consistency, cramer_rao, ekf, figures, ibo, pinhole, record, scenarios, smo, track
+from percept_obs import check_consistency, cramer_rao, ekf, figures, ibo, pinhole, record, scenarios, smo, track
 from percept_obs.cli import main
 from percept_obs.observers import de_luca
 from percept_obs.recording import Recording
@@ -145,7 +145,7 @@ def test_pictures_of_what_was_not_asked_are_refused(found):
 
 
 def test_the_error_over_the_bound_is_told_of_runs_that_settle():
-    columns = {"settling_time": Run.settling_time, "over_bound": over_bound(BOTH)}
+    columns = {"over_bound": over_bound(BOTH)}
     kalman = ekf(BOTH, noise_variance=1e-4)
     found = compare(RECORDINGS, {"filter": kalman, "none": smo(BOTH, bound=0.3)}, columns=columns)
     runs = [track(each, kalman) for each in RECORDINGS]

@@ -13,6 +13,7 @@ import sys
 import tempfile
 import traceback
 import warnings
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -197,7 +198,7 @@ def calls():
         (po.windowed, {"form": form, "recording": recording, "window": 1.0}),
         (po.how_observable, {"recording": recording, "system": form, "window": 1.0}),
         (po.cramer_rao, {"recording": recording, "system": form, "prior": np.eye(3), "doubt": 0.1}),
-        (po.efficiency, {"runs": [run, run], "bound": bound}),
+        (po.efficiency, {"runs": [run, replace(run)], "bound": bound}),
         (po.lie_derivatives, {"system": form, "orders": 1, "varying": False}),
         (error_gramian, {"recording": recording, "system": form, "window": 1.0}),
         (empirical_gramian, {"recording": recording, "system": form, "window": 1.0}),

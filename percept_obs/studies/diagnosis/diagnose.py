@@ -169,7 +169,7 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     Raises
     ------
     ValueError
-        If there is none, one shows several points, or all are too short.
+        If there is none, one shows several points, kinds of motion differ, or all are too short.
 
     See Also
     --------
@@ -197,6 +197,8 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     given = [recordings] if isinstance(recordings, Recording) else list(recordings)
     if not given:
         raise ValueError("there is no recording; give one, or several of points that one camera saw")
+    if len({each.motion.parameters for each in given}) > 1:
+        raise ValueError("the recordings are of several kinds of motion; give points that one camera saw")
     several = [given[k] for k in np.unique(np.linspace(0, len(given) - 1, min(MOST, len(given))).round().astype(int))]
     variances = [each.effective_variance for each in several if each.effective_variance is not None]
     noise = math.sqrt(float(np.mean(variances))) if len(variances) == len(several) else None

@@ -1,0 +1,61 @@
+"""Observers, runs and what is asked of them: calls that strangers made, each refused with what to do."""
+
+from dataclasses import replace
+
+import numpy as np
+import sympy as sp
+from examples import BOTH
+from refusals import refuses
+
+import percept_obs as po
+from percept_obs import Camera, ekf, figures, ibo, pinhole, track
+from percept_obs.observers import gains, parts
+from percept_obs.points import constant, scenarios
+from percept_obs.structure import seen_as
+from percept_obs.structure.scenarios import chwa2019_experiment
+from percept_obs.studies import comparison, fields, servoing, tuning
+from percept_obs.tracking import smoothing, transition
+
+SEEN = po.record(po.scenarios.ma2005_eq35(), 1, Camera(0.1, po.Gaussian(0.01)))
+TWO = po.record(scenarios.moving_body(2), 1, Camera(0.1))
+RUN, RUN_OF_TWO, SCENE = track(SEEN, ekf(BOTH)), track(TWO, po.luenberger(TWO.view)), chwa2019_experiment("IV.A")
+TURNED, FORWARDS = po.PerspectiveSystem(po.rigid(), pinhole()), po.affine(np.zeros((3, 3)), (0, 0, -0.5))
+MAP = po.bound_map(po.PerspectiveSystem(FORWARDS, pinhole()), resolution=3)
+NEGATIVE = po.FunctionObserver("f", BOTH, np.copy, lambda s, *_: s, np.copy, lambda s: -np.eye(3))
+
+test_what_is_of_one_point_says_so = refuses(
+    lambda call: call(),
+    (lambda: track(TWO, ibo(BOTH)), "the form is of one point; the recording shows 2 points"),
+    (lambda: comparison.compare([TWO], [ibo(BOTH)]), "a comparison is of one point; the recording shows 2 points"),
+    (lambda: po.lie_derivatives(BOTH).along(TWO), "the form is of one point; the recording shows 2 points"),
+    (lambda: figures.distance(RUN_OF_TWO), "this figure is of one point; the recording shows 2 points"),
+    (lambda: po.check_consistency(RUN_OF_TWO), "claims no covariance"),
+)
+test_they_are_refused_with_what_to_do = refuses(
+    lambda call: call(),
+    (lambda: ibo(BOTH, switch="sign"), "has no gain switch"),
+    (lambda: ibo.refusal(None), "form is None"),
+    (lambda: parts.noise_bias(BOTH, sp.ImmutableMatrix([1])), r"expected \(2, 1\)"),
+    (lambda: parts.kept_within((), ()), "at least one"),
+    (lambda: gains.Gain(sp.Symbol("K"), "k", 1, 10, 0, "1/s", "pull"), "the lower end first"),
+    (lambda: replace(ibo, gains=ibo.gains[0]), "put it into a list"),
+    (lambda: ibo(BOTH).lambdify(po.rigid(), lambda t: (0, 0)), "give such a motion"),
+    (lambda: po.with_point(po.with_point(ibo(BOTH))), "has its point already"),
+    (lambda: replace(ibo(BOTH), form=TURNED.measure("y1", "y2")), "which its form has not"),
+    (lambda: track(SEEN, NEGATIVE), "negative variance at 0 s"),
+    (lambda: transition(BOTH)(np.zeros(3), 0.1, {}), "known has no a11"),
+    (lambda: replace(RUN, estimate=np.zeros((3, 3))), r"expected \(\.\.\., 11, 3\)"),
+    (lambda: RUN.estimate.__setitem__((0, 0), 5.0), "read-only"),
+    (lambda: track(SEEN, ekf(BOTH), smoothing.Belief(np.zeros(3), -np.eye(3))), "must be positive semidefinite"),
+    (lambda: MAP.at(100, 0), "the map goes from -1 to 1"),
+    (lambda: po.efficiency([RUN, RUN], po.cramer_rao(SEEN, BOTH)), "each once"),
+    (lambda: replace(po.check_consistency(RUN, 5), samples=0), "samples is 0"),
+    (lambda: comparison.compare([SEEN], [ibo(BOTH)], columns={"rms": len}), "has already"),
+    (lambda: tuning.best_setting([SEEN], [ibo(BOTH, gain=3)], lambda *_: RUN, [0.1]), "runs another observer"),
+    (lambda: fields.field_bound(pinhole(), FORWARDS, np.pi), "take a smaller one"),
+    (lambda: servoing.servo([[0, 0, 0, 0, 0, 30]], "true"), "were degrees meant"),
+    (lambda: constant(2.0).at([0.0]), "no size yet"),
+    (lambda: SCENE.choice.theta_values(4, FORWARDS, [0.0]), r"none of rigid\(\)"),
+    (lambda: SCENE.choice.inverse([0.1] * 3), r"expected \(\.\.\., 6\)"),
+    (lambda: seen_as(SEEN, SCENE.choice, SCENE.motion), "needs the outputs"),
+)
