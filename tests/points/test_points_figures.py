@@ -74,7 +74,7 @@ def test_bad_input_is_refused_in_words(recording, run):
     for call, message in (
         (lambda: figures.image_plane(3), "expected a Run or a Recording"),
         (lambda: figures.image_plane(recording.without(0, 9).without(0, 9, 1)), "no point is seen"),
-        (lambda: figures.signals(run), "a run is of several points"),
+        (lambda: figures.signals(run), "of one point; the recording shows"),
         (lambda: figures.error_norm([]), "a PointsRun or several are needed"),
         (lambda: figures.error_norm(3), "expected a PointsRun or a sequence"),
         (lambda: figures.error_norm(run, ["a", "b"]), "one for each curve"),

@@ -266,7 +266,7 @@ def test_what_is_no_model_is_refused(tmp_path, settings, how, message):
         read_colmap(write_colmap(tmp_path, **settings), **how)
 
 
-@pytest.mark.parametrize("settings", [{"gap": np.nan}, {"shortest": -1.0}])
+@pytest.mark.parametrize("settings", [{"gap": 0.0}, {"shortest": -1.0}])
 def test_tracks_of_a_model_are_split_by_times(tmp_path, settings):
     with pytest.raises(ValueError, match="expected a positive gap, and 0 or more"):
         read_colmap(write_colmap(tmp_path), rate=20).recordings(**settings)
