@@ -31,10 +31,10 @@ AFTER = 3.0
 
 
 def error(run, truth, film, late):
-    """Relative error of a distance at a sample, by the renderer's truth."""
-    pixel = film.camera.pixels(run.recording.last_outputs[late])
-    frame = truth.frame(run.time[late])
-    return abs(run.distance[late] / truth.distance_at(truth.row_time(frame, pixel[None]), pixel)[0] - 1)
+    """Relative error of a distance at the last sample seen until then, by the renderer's truth."""
+    seen = int(np.flatnonzero(np.isfinite(run.recording.outputs[: late + 1]).all(axis=1))[-1])
+    pixel, frame = film.camera.pixels(run.recording.outputs[seen]), truth.frame(run.time[seen])
+    return abs(run.distance[seen] / truth.distance_at(truth.row_time(frame, pixel[None]), pixel)[0] - 1)
 
 
 def judged(film, truth):
@@ -48,7 +48,7 @@ def judged(film, truth):
         if late < len(run.time):
             errors[run.recording.truth is not None].append(error(run, truth, film, late))
         if run.trust().trusted:
-            sure.append(error(run, truth, film, -1))
+            sure.append(error(run, truth, film, len(run.time) - 1))
     for name, board in (("corners", True), ("others", False)):
         found |= {name: np.nanmedian(errors[board]), f"{name} 90 %": np.nanquantile(errors[board], 0.9)}
     return found | {
