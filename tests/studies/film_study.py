@@ -31,10 +31,13 @@ AFTER = 3.0
 
 
 def error(run, truth, film, late):
-    """Relative error of a distance at the last sample seen until then, by the renderer's truth."""
+    """Relative error of a distance at the last sample seen until then, by the renderer's truth.
+
+    A film's samples are put to the middle of their pictures' time.
+    """
     seen = int(np.flatnonzero(np.isfinite(run.recording.outputs[: late + 1]).all(axis=1))[-1])
     pixel, frame = film.camera.pixels(run.recording.outputs[seen]), truth.frame(run.time[seen])
-    return abs(run.distance[seen] / truth.distance_at(truth.row_time(frame, pixel[None]), pixel)[0] - 1)
+    return abs(run.distance[seen] / truth.distance_at(truth.time[frame], pixel[None])[0] - 1)
 
 
 def judged(film, truth):
