@@ -87,7 +87,7 @@ def track(
     start : mapping of coordinate names to values, n values, Belief, or FirstSight, optional
         Estimates at the first sample.  What is left out starts from the first sample (measured) or at the
         observer's own start (hidden).  The extended Kalman filter may start from a `Belief`, with a covariance.  Left
-        out for a camera with an IMU, it starts when a smoother of all samples so far knows the distance to a tenth,
+        out for a camera with an IMU, it starts when a smoother of all samples so far knows the distance to 5 %,
         and it has no estimate before.  Several points may start at their `FirstSight`.
     hold : "zero", "first" or "exact"
         Signal that stands for the outputs between samples: the last sample; a line to the next one, which a running
