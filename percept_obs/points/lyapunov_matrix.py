@@ -160,7 +160,7 @@ def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | No
     Raises
     ------
     ValueError
-        If samples and times do not fit.
+        If samples and times do not fit, or a function has times.
 
     See Also
     --------
@@ -173,6 +173,8 @@ def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | No
     [[[2.0, 0.0], [0.0, 2.0]]]
     """
     if callable(P):
+        if times is not None:
+            raise ValueError("P is a function of time, and times are those of samples; give one of the two")
         return LyapunovMatrix("scheduled P", None, schedule=Signal(P))
     samples = np.atleast_1d(numbers(P, "P"))
     if not samples.size:

@@ -17,7 +17,7 @@ from percept_obs.observers import OBSERVERS, Observer
 from percept_obs.observers.family import Family
 from percept_obs.recording import Recording
 from percept_obs.recording.footage import Footage
-from percept_obs.studies.comparison import ABOUT, Columns, Comparison, Estimate, Follow, error_at, rows_of
+from percept_obs.studies.comparison import ABOUT, Columns, Comparison, Estimate, Follow, error_at, number_of, rows_of
 from percept_obs.studies.least_squares import moving_window_least_squares
 from percept_obs.studies.tuning import MOST, STARTS, best_setting, tune_by_likelihood
 from percept_obs.system.forms import PartitionedSystem
@@ -27,7 +27,7 @@ from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.tracking.following import DoesNotFit, require_match, track
 from percept_obs.tracking.function import FunctionObserver
 from percept_obs.tracking.run import Run
-from percept_obs.validation import bar, checked, load_pandas
+from percept_obs.validation import bar, checked, load_pandas, once
 
 __all__ = ["all_observers"]
 
@@ -108,7 +108,7 @@ def all_observers(
     Raises
     ------
     ValueError
-        If fewer than two recordings can be used, or none of the times, or a recording is in both halves.
+        If fewer than two recordings can be used, or none of the times, one is given twice, or options contradict.
     DoesNotFit
         If the first recording has another view, other outputs or another motion than the form.
 
@@ -144,6 +144,9 @@ def all_observers(
         raise ValueError(f"{len(references)} references and {len(after)} times after: at least one of each is needed")
     if not all(math.isfinite(seconds) and seconds >= 0 for seconds in after):
         raise ValueError(f"after is {list(after)!r}; the times must be finite and not negative, in seconds")
+    once(after=after, references=references)
+    if len(choosing) and split != "alternating":
+        raise ValueError("choosing says which recordings to choose on, and so does split; give one of the two")
     if split not in get_args(Split):
         raise ValueError(f"the split {split!r} is none of {' and '.join(map(repr, get_args(Split)))}")
     if max_tracks is not None and max_tracks < 2:
@@ -239,7 +242,7 @@ def all_observers(
     asked |= columns or {}
 
     def measures(run: Run) -> dict[str, float]:
-        return {name: of(run) for name, of in asked.items()}
+        return {name: number_of(name, of, run) for name, of in asked.items()}
 
     rows: list[dict[str, Any]] = []
     for make, gains in bar(tried.items(), "choosing gains", unit="observer"):

@@ -24,7 +24,7 @@ from percept_obs.system.view import refuse_several
 from percept_obs.tracking.following import AnyObserver, StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import bar, checked, load_pandas
+from percept_obs.validation import bar, checked, load_pandas, numbers
 
 __all__ = ["Comparison", "compare", "over_bound", "relative_distance_errors"]
 
@@ -264,7 +264,8 @@ def compare(
     Raises
     ------
     ValueError
-        If recordings or observers are none or do not fit, one has no truth or several points, or a column is taken.
+        If recordings or observers are none or do not fit, one has no truth or several points, or a column is
+        taken or gives no number.
 
     See Also
     --------
@@ -307,11 +308,19 @@ def compare(
             "settling_time": outcome.settled if outcome.converged else math.inf,
             # a run that diverged has no error
             **{name: math.inf if math.isnan(value) else float(value) for name, value in errors.items()},
-            **{name: of(run) for name, of in (columns or {}).items()},
+            **{name: number_of(name, of, run) for name, of in (columns or {}).items()},
         }
 
     rows = [row for label, run in follow.items() for row in rows_of(label, run, recordings, measures)]
     return Comparison(load_pandas().DataFrame(rows), reporting=recordings)
+
+
+def number_of(name: str, of: Callable[[Run], float], run: Run) -> float:
+    """Return what a column has of a run; raise ValueError if it is no number."""
+    found = of(run)
+    if (size := numbers(found, f"column {name!r} of a run").size) != 1:
+        raise ValueError(f"column {name!r} of a run is {size} numbers; let its function return one, such as their mean")
+    return found
 
 
 def rows_of(

@@ -144,7 +144,7 @@ def ensemble(
     starts = named_start(start, observer.form.coordinates)
     if clash := sorted(name for name in starts if f"start_{name}" in (over or {})):
         raise ValueError(f"over varies start_{clash[0]}, and start gives {clash[0]} as well; give one of the two")
-    positive(step=step)
+    positive(step=step, duration=duration)
     steps = duration / min(step, camera.period)
     limit(steps, "steps", "take longer steps or a shorter time")
     grid = grid_of(over or {}, several, names)

@@ -12,7 +12,7 @@ from percept_obs.recording import NO_NOISE, Camera
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT, ImagingSurface
 from percept_obs.tracking.doubts import FAR
-from percept_obs.validation import checked, limit, positive
+from percept_obs.validation import checked, limit, once, positive
 
 __all__ = ["FieldBound", "field_bound"]
 
@@ -62,6 +62,8 @@ class FieldBound:
 
     def within(self, low: float, high: float) -> float:
         """Median over the directions between two angles from the optical axis, in radians; ValueError without any."""
+        if not 0 <= low <= high <= np.pi:
+            raise ValueError(f"the angles are {low} and {high} rad; give a smaller and a larger one, from 0 to pi")
         away = np.hypot(*np.meshgrid(self.angles, self.angles))
         inside = self.relative[(away >= low) & (away <= high)]
         if not np.isfinite(inside).any():
@@ -126,8 +128,8 @@ def field_bound(
     Raises
     ------
     ValueError
-        If the surface does not see the field of view, the motion has no numbers, an output is not there, or a
-        number is not positive.
+        If the surface does not see the field of view, the motion has no numbers, an output is not there or twice,
+        or a number is not positive.
 
     See Also
     --------
@@ -158,6 +160,7 @@ def field_bound(
     measured = tuple(names) if measured is None else tuple(measured)
     if not measured or not set(measured) <= set(names):
         raise ValueError(f"the {surface.name} has the outputs {', '.join(names)}; {measured} cannot be measured")
+    once(measured=measured)
     if size < 3:
         raise ValueError(f"the size is {size}; three directions are needed, to both sides and on the axis")
     times = Camera(period, NO_NOISE).times(seconds)

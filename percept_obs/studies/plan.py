@@ -25,7 +25,7 @@ from percept_obs.system.motion import Motion, coefficients
 from percept_obs.system.signal import from_the_start
 from percept_obs.system.surfaces import POINT, BehindCamera
 from percept_obs.tracking.verdict import stays
-from percept_obs.validation import numbers
+from percept_obs.validation import numbers, once
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,6 +82,8 @@ def grid_of(over: Mapping[str, Any], seeds: Array, units: Mapping[str, str]) -> 
                 f"over goes {name!r} through values of shape {values.shape}; give finite numbers, a list of them or a "
                 "DataArray with named dimensions"
             )
+        if along == (name,):
+            once(**{f"over {name}": values.tolist()})
         columns[name] = (along, values, {"units": units[name]})
     return xr.Dataset(coords=columns)
 

@@ -19,7 +19,7 @@ from percept_obs.system.signal import Signal
 from percept_obs.system.view import refuse_several
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
-from percept_obs.validation import checked
+from percept_obs.validation import checked, once
 
 SHARE = 0.01
 """Default error of an entry, as a share of the motion's size."""
@@ -64,10 +64,14 @@ class Sensitivity:
         """Change of the estimates, to first order, when entries are believed larger by so much, shape (K, n)."""
         if unknown := sorted(set(errors) - set(self.entries)):
             raise ValueError(f"the sensitivity has no entry {', '.join(unknown)}; it has {', '.join(self.entries)}")
+        if not np.isfinite([*errors.values()]).all():
+            raise ValueError(f"the errors are {errors}; give finite ones")
         return np.asarray(self.derivatives @ [errors.get(name, 0.0) for name in self.entries])
 
     def distance_change(self, share: float = SHARE) -> Array:
         """Relative change of the distance when each entry is off by a share of the motion's size, shape (K, q)."""
+        if not abs(share) <= 1:
+            raise ValueError(f"share is {share}; it is a part of the motion's size, at most all of it: was it in %?")
         view = self.run.view
         inverse = view.inverse(self.run.estimate)
         slope_of_inverse = np.stack([view.inverse(each) for each in np.moveaxis(self.derivatives, -1, 0)], axis=-1)
@@ -115,7 +119,7 @@ def sensitivity(
     Raises
     ------
     ValueError
-        If the motion has no such entry, or none at all.
+        If the motion has no such entry, or none at all, or no entry or one twice is named.
     DoesNotFit
         If the observer cannot follow the recording.
 
@@ -138,6 +142,9 @@ def sensitivity(
     (501, 3, 2)
     """
     refuse_several("the observer", recording.view)
+    if entries is not None and not len(entries):
+        raise ValueError("the sensitivity has no entry; name some, such as 'b3', or leave entries out for all")
+    once(entries=[] if entries is None else entries)
     motion = recording.motion
     moved = _moved(motion, entries)
     run = track(recording, observer, start, **settings)

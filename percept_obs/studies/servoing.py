@@ -21,7 +21,7 @@ from percept_obs.recording import Recording
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
-from percept_obs.validation import bar, checked, limit, one_of, positive, travels
+from percept_obs.validation import bar, checked, limit, one_of, positive
 
 SYSTEM = PerspectiveSystem(rigid(), pinhole())
 STEERING = steering(SYSTEM)
@@ -47,7 +47,7 @@ BELIEVED = (0.1, 10.0)
 """Shares of the goal's inverse depth within which an observed one is believed."""
 
 
-@travels
+@checked
 @dataclass(frozen=True, eq=False)
 class Servoing:
     """Closed loops from S starts over K samples of p points.
@@ -267,19 +267,24 @@ def servo(
     from scipy.linalg import expm
 
     poses = np.asarray(starts, dtype=float)
-    if poses.ndim != 2 or poses.shape[1] != 6 or not np.isfinite(poses).all():
+    if poses.ndim != 2 or poses.shape[1] != 6 or not len(poses) or not np.isfinite(poses).all():
         raise ValueError(f"starts have shape {poses.shape}; give finite rows of a translation and a rotation, (S, 6)")
     if (most := np.linalg.norm(poses[:, 3:], axis=1).max(initial=0)) > 2 * math.pi:
         raise ValueError(f"a start turns by {most:.3g} rad, more than once around; were degrees meant?")
     positive(ratio=ratio, gain=gain, duration=duration)
     observed = depth if isinstance(depth, Observer) else None
+    if observed and ratio != 1:
+        raise ValueError(f"the ratio {ratio} is that of a depth that is not observed; leave it out with an observer")
     if observed is None and depth not in ("true", "constant"):
         raise ValueError(f"the depth {depth!r} is none of 'true', 'constant' and an Observer, such as ekf(FORM)")
     if observed and (observed.form.x1, observed.form.parameters) != (FORM.x1, FORM.parameters):
         raise ValueError(f"the {observed.name} observer is of another form; make it of servoing.FORM")
     limit(duration / PERIOD, "steps", "take a shorter duration", 1e6)
-    if not 0 <= noise < math.inf or seed < 0:
-        raise ValueError(f"the noise is {noise} and the seed {seed}; give a deviation and a whole number from 0 on")
+    if not 0 <= noise < FIELD or not 0 <= looking < math.inf or seed < 0:
+        raise ValueError(
+            f"noise is {noise}, looking {looking} and seed {seed}; give a noise in image coordinates, below "
+            f"{FIELD:g}, and a speed and a whole number from 0 on"
+        )
     generator, surface, steps = np.random.default_rng(seed), SYSTEM.surface, round(duration / PERIOD) + 1
     goal = surface.project(GOAL)
     points = _points(poses)
@@ -334,7 +339,7 @@ def starts(count: int, seed: int = 0) -> Array:
     Raises
     ------
     ValueError
-        If the count is not positive.
+        If the count is not positive, or too large.
 
     See Also
     --------
@@ -348,6 +353,7 @@ def starts(count: int, seed: int = 0) -> Array:
     """
     if count < 1:
         raise ValueError(f"the count is {count}; give the number of poses, at least 1")
+    limit(count, "poses", "take fewer", 2e4)
     generator, found = np.random.default_rng(seed), list[Array]()
     high = np.array([0.5, 0.5, 2.0, 0.4, 0.4, 1.0])
     while len(found) < count:

@@ -3,6 +3,7 @@
 from percept_obs.validation.arguments import WrongKind as WrongKind
 from percept_obs.validation.arguments import checked as checked
 from percept_obs.validation.arguments import numbers as numbers
+from percept_obs.validation.arguments import once as once
 from percept_obs.validation.arguments import one_of as one_of
 from percept_obs.validation.arguments import positive as positive
 from percept_obs.validation.arguments import refuse_kind as refuse_kind

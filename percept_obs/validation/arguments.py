@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import inspect
 import reprlib
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import is_dataclass
 from functools import cache, wraps
 from numbers import Real
@@ -153,6 +154,8 @@ def _message(function: str, argument: str, value: Any, kind: Kind, parameter: in
     remedy = f"pass for example {kind.example}" if kind.example else ""
     if parameter and parameter.kind is parameter.VAR_POSITIONAL and isinstance(value, list | tuple):
         remedy = f"pass its entries one by one: {function}({', '.join(map(repr, value))})"
+    elif isinstance(value, FunctionType) and "a function of" in kind.label:
+        remedy = f"it takes {inspect.signature(value)}"
     elif isinstance(value, FunctionType) or hasattr(value, "__signature__"):
         needed = [p.name for p in inspect.signature(value).parameters.values() if p.default is p.empty and p.kind < 2]
         remedy = f"call it: {value.__name__}({', '.join(needed)})"
@@ -213,6 +216,13 @@ def one_of(count: int, **places: int) -> None:
     for name, place in places.items():
         if place != int(place) or not 0 <= place < count:
             raise ValueError(f"{name} is {place}; there are {count}, from 0 to {count - 1}")
+
+
+def once(**values: Iterable[Any]) -> None:
+    """Refuse what stands twice in sequences, each by its name."""
+    for name, value in values.items():
+        if twice := [each for each, count in Counter(value).items() if count > 1]:
+            raise ValueError(f"{name} has {', '.join(map(str, twice))} twice; give each once")
 
 
 def positive(**values: float) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from numbers import Integral, Real
-from types import MappingProxyType, NoneType, UnionType
+from types import FunctionType, MappingProxyType, MethodType, NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import numpy as np
@@ -103,6 +104,17 @@ def _is_integer(value: Any) -> bool:
     return isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) < 2**63
 
 
+def takes(value: Any, count: int) -> bool:
+    """Return True for what can be called with so many arguments; what hides its arguments is believed."""
+    if not isinstance(value, FunctionType | MethodType):
+        return callable(value)
+    try:
+        inspect.signature(value).bind(*range(count))
+    except TypeError:
+        return False
+    return True
+
+
 Entries = Annotated[Any, Kind("an array of real numbers or of sympy expressions", _are_expressions)]
 Coefficients = Annotated[
     Any,
@@ -142,6 +154,10 @@ def kind_of(annotation: Any) -> Kind:
     if origin is Literal:
         names = ", ".join(map(repr, inside))
         return Kind(f"one of {names}", lambda v: isinstance(v, type(inside[0])) and not isinstance(v, bool), "", True)
+    if origin is Callable and inside[0] is not Ellipsis:
+        count = len(inside[0])
+        label = f"a function of {count} argument{'s' * (count != 1)}"
+        return Kind(label, lambda v: takes(v, count), by_type=True)
     if origin is Callable:
         return Kind("a function", callable, by_type=True)
     if isinstance(origin, type) and issubclass(origin, Mapping):

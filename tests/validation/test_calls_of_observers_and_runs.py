@@ -10,13 +10,16 @@ from refusals import refuses
 import percept_obs as po
 from percept_obs import Camera, ekf, figures, ibo, pinhole, track
 from percept_obs.observers import gains, parts
-from percept_obs.points import constant, scenarios
+from percept_obs.points import constant, scenarios, scheduled
 from percept_obs.structure import seen_as
-from percept_obs.structure.scenarios import chwa2019_experiment
+from percept_obs.structure.scenarios import chwa2019_experiment, chwa2019_simulation
 from percept_obs.studies import comparison, fields, servoing, tuning
+from percept_obs.studies.all_observers import all_observers
+from percept_obs.studies.sensitivity import sensitivity
 from percept_obs.tracking import smoothing, transition
 
 SEEN = po.record(po.scenarios.ma2005_eq35(), 1, Camera(0.1, po.Gaussian(0.01)))
+EARLY = SEEN.between(0, 0.9)
 TWO = po.record(scenarios.moving_body(2), 1, Camera(0.1))
 RUN, RUN_OF_TWO, SCENE = track(SEEN, ekf(BOTH)), track(TWO, po.luenberger(TWO.view)), chwa2019_experiment("IV.A")
 TURNED, FORWARDS = po.PerspectiveSystem(po.rigid(), pinhole()), po.affine(np.zeros((3, 3)), (0, 0, -0.5))
@@ -58,4 +61,30 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: SCENE.choice.theta_values(4, FORWARDS, [0.0]), r"none of rigid\(\)"),
     (lambda: SCENE.choice.inverse([0.1] * 3), r"expected \(\.\.\., 6\)"),
     (lambda: seen_as(SEEN, SCENE.choice, SCENE.motion), "needs the outputs"),
+    (lambda: po.luenberger(TWO.view, lambda: 1.0), r"a function of 1 argument or .*: it takes \(\)"),
+    (lambda: comparison.compare([SEEN], [ibo(BOTH)], columns={"x": lambda: 1}), "to a function of 1 argument"),
+    (lambda: po.semigeneral(SEEN, SCENE.motion, 0.5, lambda: 5), "expected a function of 1 argument"),
+    (lambda: comparison.compare([SEEN], [ibo(BOTH)], columns={"x": lambda _: None}), "column 'x' of a run is None"),
+    (lambda: comparison.compare([SEEN], [ibo(BOTH)], columns={"x": lambda r: r.time}), "11 numbers; let its function"),
+    (
+        lambda: all_observers([SEEN, EARLY], after=[0.5], columns={"x": str}, candidates={ibo: [{}]}),
+        "'x' of a run is the",
+    ),
+    (lambda: po.ensemble(po.scenarios.ma2005_eq35(), ibo(BOTH), duration=-1), "duration is -1.0; it must be positive"),
+    (lambda: sensitivity(SEEN, ibo(BOTH), entries=["b3", "b3"]), "entries has b3 twice; give each once"),
+    (lambda: sensitivity(SEEN, ibo(BOTH), entries=["b3"]).change(b3=np.inf), "give finite ones"),
+    (lambda: sensitivity(SEEN, ibo(BOTH), entries=["b3"]).distance_change(500), "was it in %"),
+    (lambda: fields.field_bound(pinhole(), FORWARDS, measured=("y1", "y1")), "measured has y1 twice"),
+    (lambda: fields.field_bound(pinhole(), FORWARDS, size=3).within(0, 25), "from 0 to pi"),
+    (lambda: po.ensemble(po.scenarios.ma2005_eq35(), ibo(BOTH), {"gain": [5, 5]}), "over gain has 5.0 twice"),
+    (lambda: all_observers([SEEN, EARLY], after=(1, 1)), "after has 1 twice"),
+    (lambda: all_observers([SEEN], choosing=[EARLY], split="earlier and later"), "and so does split"),
+    (lambda: servoing.servo(np.zeros((0, 6)), "true"), "give finite rows"),
+    (lambda: servoing.servo(servoing.starts(1), ekf(servoing.FORM), ratio=0.5), "leave it out with an observer"),
+    (lambda: servoing.servo(servoing.starts(1), "true", noise=10), "below 1"),
+    (lambda: servoing.servo(servoing.starts(1), "true", looking=-1), "a speed and a whole number from 0 on"),
+    (lambda: servoing.servo(servoing.starts(1), "true", duration=0.1).camera(True), "expected a whole number"),
+    (lambda: servoing.starts(10**9), "take fewer"),
+    (lambda: scheduled(lambda t: 1 + t, times=[0, 1]), "give one of the two"),
+    (lambda: chwa2019_simulation("V.A", (0.1, 0.2)), r"expected \(\.\.\., 3\)"),
 )
