@@ -28,7 +28,8 @@ FEWEST_MARKERS = 4
 """Fewest markers of a dictionary in a picture that mean a board, and no accident."""
 
 GREY = Kind(
-    "grey values of 8 bits, shape (h, w)", lambda v: isinstance(v, np.ndarray) and (v.dtype, v.ndim) == ("u1", 2)
+    "grey values of 8 bits, shape (h, w)",
+    lambda v: isinstance(v, np.ndarray) and (v.dtype, v.ndim) == ("u1", 2) and v.size > 0,
 )
 
 WINDOW = 0.7
@@ -50,7 +51,7 @@ class Board:
     Raises
     ------
     ValueError
-        If squares are too few, too many for the markers or over 1 m, or a marker does not fit into its square.
+        If squares are too few, too many for the markers or over 1 m, or a marker is below 1 mm or its square no larger.
 
     See Also
     --------
@@ -73,9 +74,10 @@ class Board:
             raise ValueError(
                 f"the board has {self.columns} x {self.rows} squares; it needs 3 x 3 at least, and at most 100 squares"
             )
-        if not 0 < self.marker < self.square <= 1:
+        if not 0.001 <= self.marker < self.square <= 1:
             raise ValueError(
-                f"marker {self.marker} m, square {self.square} m: the marker must be smaller, the square 1 m at most"
+                f"marker {self.marker} m, square {self.square} m: the marker must be smaller, of 1 mm at least, the "
+                "square 1 m at most"
             )
 
     @classmethod
