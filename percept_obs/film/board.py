@@ -51,7 +51,7 @@ class Board:
     Raises
     ------
     ValueError
-        If squares are too few, too many for the markers or over 1 m, or a marker is below 1 mm or its square no larger.
+        If squares are too few, too many for the markers or over 1 m, or a marker does not fit into its square.
 
     See Also
     --------
@@ -74,10 +74,9 @@ class Board:
             raise ValueError(
                 f"the board has {self.columns} x {self.rows} squares; it needs 3 x 3 at least, and at most 100 squares"
             )
-        if not 0.001 <= self.marker < self.square <= 1:
+        if not 0 < self.marker < self.square <= 1:
             raise ValueError(
-                f"marker {self.marker} m, square {self.square} m: the marker must be smaller, of 1 mm at least, the "
-                "square 1 m at most"
+                f"marker {self.marker} m, square {self.square} m: the marker must be smaller, the square 1 m at most"
             )
 
     @classmethod

@@ -150,7 +150,7 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: figures.cases({"a": []}), "'a': 'no run'"),
     (lambda: observer_lab().save("lab.pdf"), "name 'lab.html', not 'lab.pdf'"),
     (lambda: derivation_desk(hints={"rate": 2}), 'such as "rate 6"'),
-    (lambda: Board(7, 5, 1e-4, 5e-5), "1 mm at least"),
+    (lambda: check(b"y1' = b1", SYSTEM), "a bytes is no formula"),
     (lambda: Board().detect(np.zeros((0, 0), np.uint8)), "picture is an array of shape"),
     (lambda: read_film(example_film(), camera=PixelCamera((9, 9), (5, 5), (19, 10))), "the film .640, 360."),
     (lambda: Footage((SEEN,), ("stereo",), render(SEEN, 2, 32), "x"), "names of their distances"),
