@@ -13,7 +13,7 @@ from typing import Any
 
 from percept_obs.exercises import COPIES, GRADERS, individual
 from percept_obs.exercises.models import notebooks
-from percept_obs.validation import checked, write_whole
+from percept_obs.validation import checked, to_write, write_whole
 
 FIRST_NOTEBOOK = "00_start.ipynb"
 
@@ -67,11 +67,13 @@ def collect(options: argparse.Namespace) -> int:
 
     from percept_obs.exercises.collecting import collect, filled_in
 
-    if options.output.is_dir() or not options.output.parent.is_dir():
-        raise _Mistake(f"cannot write the table to {options.output}; name a file, in a folder that is there")
+    earlier: Any = None
+    if to_write(options.output, ".csv", ".txt").exists():
+        earlier = pd.read_csv(options.output, dtype=str, keep_default_na=False, encoding="utf-8-sig")
+        if "student" not in earlier:
+            raise _Mistake(f"{options.output} is no earlier table, for it has no column student; name another file")
     table = collect(options.directory, options.roster, options.run_code)
-    if options.output.exists():
-        table = filled_in(table, pd.read_csv(options.output, dtype=str, keep_default_na=False, encoding="utf-8-sig"))
+    table = table if earlier is None else filled_in(table, earlier)
     write_whole(options.output, table.to_csv(index=False).encode("utf-8-sig"))
     states = table["handed in"].str.split(" by").str[0].value_counts()
     print(f"{', '.join(f'{count} {state}' for state, count in states.items())}: see {options.output}")
@@ -115,8 +117,8 @@ def check(options: argparse.Namespace) -> int:
     from percept_obs.papers import find, judge, page, report
 
     ledgers = find(options.places, options.paper)
-    if options.html and (options.html.is_dir() or not options.html.parent.is_dir()):
-        raise _Mistake(f"cannot write the page to {options.html}; name a file, in a folder that is there")
+    if options.html:
+        to_write(options.html, ".html", ".htm")
     began = perf_counter()
     held = judge(ledgers)
     if options.places:

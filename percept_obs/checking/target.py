@@ -184,7 +184,7 @@ class Target:
             return Text(tuple(named), tuple(d for part in parts.values() for d in part.definitions))
         if isinstance(mine, Sequence) and all(isinstance(part, str) for part in mine):
             return self.read(";\n".join(mine))
-        if isinstance(mine, Sequence):
+        if isinstance(mine, Sequence) and not isinstance(mine, bytes):
             texts = [self.read(part) for part in mine]
             return Text(
                 tuple(r for part in texts for r in part.lines), tuple(d for part in texts for d in part.definitions)
@@ -201,7 +201,7 @@ class Target:
 
     def _of_sympy(self, mine: Any) -> tuple[Reading, ...]:
         """Return the lines of an expression, a matrix or a relation."""
-        if not isinstance(mine, sp.Basic | sp.MatrixBase | int | float):
+        if isinstance(mine, bool) or not isinstance(mine, sp.Basic | sp.MatrixBase | int | float):
             raise ValueError(f"a {type(mine).__name__} is no formula; give text, sympy, or a list or mapping of them")
         formula = sp.sympify(mine, strict=True)
         if formula.has(sp.nan, sp.zoo, sp.oo, -sp.oo):

@@ -62,7 +62,7 @@ def target_of(thing: Any) -> Target:
         return _joined(Target(tuple(lines_of(r.name, r.formula))) for r in read(thing, named).lines)
     if isinstance(thing, Mapping):
         return _joined(_called(str(name), target_of(part)) for name, part in thing.items())
-    if isinstance(thing, Sequence) and not isinstance(thing, Derivation):
+    if isinstance(thing, Sequence) and not isinstance(thing, Derivation | bytes):
         return _joined(map(target_of, thing))
     if isinstance(getattr(thing, "target", None), Target):
         return thing.target

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from types import EllipsisType, MappingProxyType
 from typing import Any
 
 from percept_obs.checking import Review, Target, check, target_of
 from percept_obs.validation import checked, refuse_kind
+from percept_obs.validation.arguments import described
 from percept_obs.validation.kinds import is_real
 
 
@@ -103,7 +105,7 @@ def derive(
         mine = f"{asked[0]} = {mine}"
     goal = _with_factors(target_of(target), letters) if letters else target_of(target)
     names = [line.name for line in goal.lines]
-    if unknown := [name for name in asked if name not in names]:
+    if unknown := [name or "''" for name in asked if name not in names]:
         raise ValueError(f"there is no line {', '.join(unknown)}; the target has {', '.join(filter(None, names))}")
     try:
         review = check(mine, goal)
@@ -123,7 +125,7 @@ def _with_factors(target: Target, factors: Mapping[str, float]) -> Target:
     used = set().union(*(line.formula.free_symbols for line in target.lines))
     known = {s: factors[name] * s for s in used for name in (s.name, re.sub(r"_\d+$", "", s.name)) if name in factors}
     names = {re.sub(r"_\d+$", "", symbol.name) for symbol in used} | {symbol.name for symbol in used}
-    if strange := sorted(name for name, factor in factors.items() if name not in names or not factor):
+    if strange := sorted(name for name, factor in factors.items() if name not in names or not 0 < abs(factor) < inf):
         raise ValueError(f"no letter can have the factor of {', '.join(strange)}; there are {', '.join(sorted(names))}")
     lines = tuple(replace(line, formula=line.formula.xreplace(known)) for line in target.lines)
     return replace(target, lines=lines, derivation=None, elsewhere=None, others={})
@@ -217,7 +219,8 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
         return Attempt(None, f"The experiment cannot run with {mine!r}{quoted}. It says: {error}")
     refuse_kind("reach", f"what {getattr(judge, '__name__', 'judge')} returns", numbers, Mapping[str, Any])
     if missing := [name for name in sorted(most) if not is_real(numbers.get(name))]:
-        raise ValueError(f"the experiment gives no number {', '.join(missing)}; it gives {', '.join(numbers)}")
+        given = (f"{name}, {described(value)}" if name in missing else name for name, value in numbers.items())
+        raise ValueError(f"the experiment gives no number {', '.join(missing)}; it gives {', '.join(given)}")
     right = all(numbers[name] <= limit for name, limit in most.items())
     results = [f"{name.replace('_', ' ')} {numbers[name]:.3g} ({limit:g} is allowed)" for name, limit in most.items()]
     return Attempt(right, f"{'Reached' if right else 'Not reached yet'}: {', '.join(results)}.")

@@ -183,7 +183,8 @@ def students(folder: Path, roster: Path | None) -> list[Student]:
     """Return the students of a roster, and whoever else has handed in."""
     folders = sorted(f for f in folder.iterdir() if f.is_dir()) if folder.is_dir() else []
     if not folders:
-        raise ValueError(f"{folder} holds no folders; put each student's notebooks into one with the student's name")
+        what = "" if folder.is_dir() else "is not there: it "
+        raise ValueError(f"{folder} {what}holds no folders; put each student's notebooks into one with the name")
     if roster is None:
         return [Student(name_of(f), f) for f in folders]
     try:
@@ -193,7 +194,7 @@ def students(folder: Path, roster: Path | None) -> list[Student]:
         raise ValueError(f"{roster} cannot be read; save it as CSV in UTF-8: {error}") from None
     names = [same_name(row.get("student", "")) for row in rows]
     if not rows or "" in names or len(set(names)) < len(names):
-        raise ValueError(f"{roster} needs a first line with the word student, and below it each name once")
+        raise ValueError(f"{roster} needs a first line with the word student, commas between, below it each name once")
     found = []
     for row in rows:
         known = same_name(row.get("folder") or row["student"])

@@ -10,7 +10,7 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from percept_obs.exercises.models import FOLDED, answers_in, cells_of, key_of
+from percept_obs.exercises.models import FOLDED, answers_in, cells_of, key_of, statements
 from percept_obs.validation import checked
 
 Notebook = Mapping[str, Any]
@@ -38,7 +38,7 @@ def stub(solution: str) -> str:
     Raises
     ------
     ValueError
-        If the code does not end so.
+        If the code does not end so, or is no Python.
 
     See Also
     --------
@@ -49,7 +49,7 @@ def stub(solution: str) -> str:
     >>> stub('prediction = "b"')
     'prediction = ...  # your answer'
     """
-    match ast.parse(solution).body:
+    match statements(solution):
         case [*_, ast.Assign(targets=[ast.Name(id=name)])]:
             return f"{name} = ...  # your answer"
     raise ValueError(f"a solution ends by giving the answer a name, answer = ...; this does not:\n{solution}")
@@ -110,7 +110,7 @@ def _for_students(cell: Notebook) -> Iterator[dict[str, Any]]:
 def _tallied(check: str, task: str) -> str:
     """Return a check that counts its attempts."""
     lines = check.splitlines(keepends=True)
-    begin = ast.parse(check).body[-1].lineno - 1
+    begin = statements(check)[-1].lineno - 1
     reply = "".join(lines[begin:]).strip()
     return f"from percept_obs.exercises import tally\n\n{''.join(lines[:begin])}tally({reply}, {json.dumps(task)})"
 

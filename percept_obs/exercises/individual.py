@@ -11,12 +11,13 @@ from decimal import Decimal
 from hashlib import sha256
 from typing import Any
 
-from percept_obs.exercises.models import cells_of
+from percept_obs.exercises.models import cells_of, statements
 from percept_obs.validation import checked
 
 OURS = "percept_obs"
 """Key of what a cell or a notebook says to this package in its metadata."""
 
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
 _OPTION = re.compile(r"^- ([a-z]): (.*)$", re.MULTILINE)
 
 
@@ -58,7 +59,7 @@ def individual(notebook: Mapping[str, Any], student: str) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If it is no notebook, or the name is empty.
+        If it is no notebook or a student's, the name is empty, or a rule cannot be followed.
 
     See Also
     --------
@@ -80,16 +81,35 @@ def individual(notebook: Mapping[str, Any], student: str) -> dict[str, Any]:
     if not same_name(student):
         raise ValueError("an empty name has no tasks; give a student's name or number")
     cells, task = [], None
+    whole = "".join("".join(cell["source"]) for cell in cells_of(notebook))
+    metadata = notebook.get("metadata", {})
+    if own := metadata.get(OURS, {}).get("student"):
+        raise ValueError(f"this notebook is {own}'s own already; give the one that is common to all")
     for cell in cells_of(notebook):
         tags, text = set(cell["metadata"].get("tags", ())), "".join(cell["source"])
         if cell["cell_type"] == "markdown" and "exercise" in tags:
+            _refuse_rules(cell, whole)
             task = _Task.of(cell, student)
         if task and tags & {"exercise", "hint", "solution"}:
             text = with_numbers(text, task.numbers, student, task.name)
             change = task.changes.get((cell["cell_type"], *tags), str)
             cell = {**cell, "source": change(text).splitlines(keepends=True)}
         cells.append(cell)
-    return {**notebook, "metadata": {**notebook["metadata"], OURS: {"student": student.strip()}}, "cells": cells}
+    return {**notebook, "metadata": {**metadata, OURS: {"student": student.strip()}}, "cells": cells}
+
+
+def _refuse_rules(cell: Mapping[str, Any], whole: str) -> None:
+    """Raise a ValueError for rules of a task that cannot be followed, or do nothing in the whole notebook."""
+    rules, task = cell["metadata"].get(OURS, {}), cell.get("id", "")
+    if strange := sorted(set(rules) - {"letters", "numbers", "rubric"}):
+        raise ValueError(f"the task {task!r} has {', '.join(strange)}; there are letters, numbers, rubric")
+    for number, rule in rules.get("numbers", {}).items():
+        fits = len(rule) > 3 and all(isinstance(part, str) for part in rule) and all(map(_NUMBER.fullmatch, rule[:3]))
+        if not (fits and Decimal(rule[0]) <= Decimal(rule[1]) and Decimal(rule[2]) > 0):
+            told = f"the task {task!r} has for {number} the rule {rule!r}"
+            raise ValueError(f"{told}; give texts: from, to, a positive step, and places such as 'gain of {{}}'")
+        if lost := [place for place in rule[3:] if place.replace("{}", number) not in whole]:
+            raise ValueError(f"the task {task!r} has for {number} the place {lost[0]!r}, which is nowhere; mend it")
 
 
 @dataclass(frozen=True)
@@ -138,11 +158,13 @@ class _Task:
 
     def check(self, text: str) -> str:
         """Return the check whose last call has the options in order, or knows the factors of letters."""
-        last = ast.parse(text).body[-1]
+        last = statements(text)[-1]
         if not (self.order or self.factors) or not isinstance(last, ast.Expr) or not isinstance(last.value, ast.Call):
             return text
         if self.order:
             kept = {str(word.arg): word.value for word in last.value.keywords}
+            if sorted(kept) != sorted(self.order):
+                raise ValueError(f"the check of {self.name!r} lacks its options; give the notebook with solutions")
             last.value.keywords = [
                 ast.keyword(new, kept[old]) for new, old in zip(sorted(kept), self.order, strict=True)
             ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 from collections.abc import Mapping
@@ -35,7 +36,19 @@ def cells_of(notebook: Mapping[str, Any]) -> list[dict[str, Any]]:
     cells = notebook.get("cells") if isinstance(notebook, Mapping) else None
     if not isinstance(cells, list):
         raise ValueError("this is no notebook; give what json.loads makes of an .ipynb file, which has a list of cells")
+    kinds: dict[str, Any] = {"cell_type": str, "metadata": Mapping, "source": (str, list)}
+    for number, cell in enumerate(cells, 1):
+        if not isinstance(cell, Mapping) or not all(isinstance(cell.get(name), kind) for name, kind in kinds.items()):
+            raise ValueError(f"cell {number} is none of a notebook; give it a cell_type, its metadata and its source")
     return cells
+
+
+def statements(code: str) -> list[ast.stmt]:
+    """Return the statements of a cell; a ValueError if it is no Python."""
+    try:
+        return ast.parse(code).body
+    except SyntaxError as error:
+        raise ValueError(f"this is no Python ({error}); mend it:\n{code}") from None
 
 
 def answers_in(cell: Mapping[str, Any]) -> list[str]:

@@ -11,7 +11,6 @@ import sys
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
 from functools import wraps
-from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
@@ -24,7 +23,7 @@ from percept_obs.figures.look import GREY, LIGHT, WIDTH
 from percept_obs.recording import Recording
 from percept_obs.system.view import refuse_several
 from percept_obs.tracking.run import Run
-from percept_obs.validation import checked
+from percept_obs.validation import checked, to_write
 from percept_obs.validation.kinds import with_article
 
 P = ParamSpec("P")
@@ -49,6 +48,7 @@ ax : axes, optional
 """Docstrings of common parameters."""
 
 
+@checked
 @dataclass(frozen=True, eq=False, repr=False)
 class Figure:
     """A figure and its text equivalent.
@@ -78,16 +78,15 @@ class Figure:
     axes: tuple[Axes, ...]
     text: str
 
-    @checked
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the picture to a file, in the format that its ending names; the text becomes its description.
 
         Raises
         ------
         ValueError
-            If matplotlib cannot write that format.
+            If matplotlib cannot write that format, or the path is a folder.
         """
-        key = DESCRIPTION.get(Path(path).suffix.lower())
+        key = DESCRIPTION.get(to_write(path).suffix.lower())
         self.figure.savefig(path, dpi=2 * SHARP, metadata={key: self.text} if key else None)
 
     def _repr_html_(self) -> str:
@@ -154,8 +153,8 @@ def canvases(axes: Sequence[Axes] | None, parts: Sequence[str], height: float, *
         axes = np.ravel(new.subplots(**layout, squeeze=False)).tolist()
         new.align_ylabels()
     found: list[Axes] = list(np.ravel(np.asarray(axes, dtype=object)))
-    if len(found) != len(parts):
-        raise ValueError(f"axes= has {len(found)} axes; {len(parts)} are needed, for {', '.join(parts)}")
+    if not len(found) == len(set(found)) == len(parts):
+        raise ValueError(f"axes= has {len(set(found))} axes; {len(parts)} are needed, for {', '.join(parts)}")
     for ax in found:
         _tidy(ax)
     return found
@@ -250,4 +249,6 @@ def labels_for(labels: Sequence[str] | None, default: Sequence[str]) -> list[str
         return [f"{name} [{k}]" if repeated else name for k, name in enumerate(default, 1)]
     if isinstance(labels, str) or len(labels) != len(default):
         raise ValueError(f"labels= is {labels!r}; a list of {len(default)} is needed, one for each curve")
+    if len(set(labels)) < len(labels):
+        raise ValueError(f"labels= is {labels!r}; give each curve a label of its own, to tell them apart")
     return list(labels)

@@ -106,8 +106,9 @@ def cases(
     """
     runs_of = {name: [runs] if isinstance(runs, Run) else list(runs) for name, runs in columns.items()}
     unknown = {name: len(_choice(runs[0]).unknown) for name, runs in runs_of.items() if runs}
-    if len(set(unknown.values())) != 1:
-        raise ValueError(f"cases with equally many unknown quantities are needed, not {unknown}; draw them one by one")
+    if len(set(unknown.values())) != 1 or len(unknown) < len(runs_of):
+        counts = {name: unknown.get(name, "no run") for name in runs_of}
+        raise ValueError(f"cases with equally many unknown quantities are needed, not {counts}; draw them one by one")
     count = next(iter(unknown.values())) + 3 * image
     layout = {"nrows": count, "ncols": len(runs_of), "sharex": "col"}
     axes = canvases(None, [*runs_of] * count, 1.1 * count + 0.9, **layout)

@@ -28,7 +28,8 @@ FEWEST_MARKERS = 4
 """Fewest markers of a dictionary in a picture that mean a board, and no accident."""
 
 GREY = Kind(
-    "grey values of 8 bits, shape (h, w)", lambda v: isinstance(v, np.ndarray) and (v.dtype, v.ndim) == ("u1", 2)
+    "grey values of 8 bits, shape (h, w)",
+    lambda v: isinstance(v, np.ndarray) and (v.dtype, v.ndim) == ("u1", 2) and v.size > 0,
 )
 
 WINDOW = 0.7

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,7 +24,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.tracking.following import track
 from percept_obs.tracking.run import Run
-from percept_obs.validation import bar, checked, load_pandas
+from percept_obs.validation import bar, checked, load_pandas, to_write
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -165,8 +164,7 @@ class Film(Footage):
 
     def overlay(self, path: PathLike) -> None:
         """Write the film with the distances of its points and their claimed interval drawn in, as MP4."""
-        if not Path(path).absolute().parent.is_dir() or Path(path).is_dir():
-            raise ValueError(f"cannot write '{path}'; name a file, such as out.mp4, in a folder that is there")
+        to_write(path, ".mp4", ".m4v", ".mov")
         write_overlay(path, self.video, self.camera, self.runs, [self.claimed(run) for run in self.runs])
 
     def claimed(self, run: Run) -> Array:

@@ -80,7 +80,8 @@ def read_film(
     ModuleNotFoundError
         If PyAV or OpenCV is missing.
     ValueError
-        If it is no film, shows no board, too little of it or two, nothing for long enough, or poses come with a board.
+        If it is no film, shows no board, too little of it or two, nothing for long enough, or camera or poses do not
+        fit: the camera is of another size, or poses come with a board.
 
     See Also
     --------
@@ -104,6 +105,8 @@ def read_film(
     if poses is not None and board is not None:
         raise ValueError("poses and a board are given, and poses are for a film without a board; leave one of them out")
     video = open_film(path)
+    if camera is not None and camera.size is not None and camera.size != video.size:
+        raise ValueError(f"camera has the size {camera.size}, the film {video.size}; give the numbers for this size")
     printed = board if isinstance(board, Board) else Board() if board is None else Board.from_json(board)
     sighting = raw = sight(video, printed)
     fisheye = camera if camera is not None and camera.lens == "equidistant" else None

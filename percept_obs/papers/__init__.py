@@ -135,6 +135,8 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
     """
     positive(processes=1 if processes is None else processes)
     wanted = [entry for ledger in ledgers for entry in ledger.entries]
+    if not wanted:
+        raise ValueError("there is no entry to judge; find(places) gives ledgers that have some")
     if len(wanted) > FEW and (processes or workers()) > 1:
         asked = set(wanted)
         parts = [[entry for entry in part if entry in asked] for paper in _PAPERS.values() for part in paper.PARTS]

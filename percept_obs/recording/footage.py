@@ -45,6 +45,11 @@ class Footage(Sequence[Recording]):
     frames: Frames
     source: str
 
+    def __post_init__(self) -> None:
+        known = {"truth", *(name for each in self.recordings for name in each.distances)}
+        if not self.recordings or not {*self.references} <= known:
+            raise ValueError(f"references is {self.references}; give recordings, and names of their distances")
+
     @overload
     def __getitem__(self, index: int) -> Recording: ...
     @overload

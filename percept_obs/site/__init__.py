@@ -6,6 +6,7 @@ Sphinx builds it, with MyST-NB.  It needs no network, neither to be built nor to
 from __future__ import annotations
 
 import io
+import re
 import shutil
 import tempfile
 from collections.abc import Collection, Mapping
@@ -99,7 +100,7 @@ def build(
         If a notebook does not run, a page has a fault such as a link that leads nowhere, or JupyterLite cannot be
         built.  What can be known without running is asked before any work starts, and told at once.
     """
-    if address and not address.startswith(("https://", "http://")):
+    if address and not re.match("https?://[^/]", address):
         raise ValueError(f"the address is {address!r}; it begins with https://, as https://example.org/course/")
     address = address and address.rstrip("/") + "/"
     run = {*notebooks, *NAMED} if run is None else {*run}

@@ -54,6 +54,16 @@ def bar(things: Iterable[Any] | None = None, label: str = "", total: float | Non
     return Bar(things, label, total, delay=2, leave=False, **options)
 
 
+def to_write(path: str | os.PathLike[str], *endings: str) -> Path:
+    """Return a path to write to; ValueError for a folder, a file in none, or one with another ending than these."""
+    target = Path(path)
+    if target.is_dir() or not target.absolute().parent.is_dir():
+        raise ValueError(f"cannot write '{path}'; name a file in a folder that is there")
+    if endings and target.suffix and target.suffix.lower() not in endings:
+        raise ValueError(f"what is written is no {target.suffix} file; name '{target.stem}{endings[0]}', not '{path}'")
+    return target
+
+
 def write_whole(target: Path, content: bytes) -> None:
     """Write a file under another name and rename it, so that half a file is never found."""
     if not target.parent.is_dir():

@@ -96,5 +96,5 @@ def test_it_computes_beside_the_page_though_the_page_is_a_file(from_disk):
 @pytest.mark.parametrize("place", ["folder", "none/lab.html"])
 def test_a_place_that_cannot_be_written_is_refused(place, tmp_path):
     (tmp_path / "folder").mkdir()
-    with pytest.raises(ValueError, match=r"name a file in a folder that exists"):
+    with pytest.raises(ValueError, match=r"name a file in a folder that is there"):
         points_lab().save(tmp_path / place)

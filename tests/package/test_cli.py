@@ -148,7 +148,7 @@ def test_check_prints_one_equation_with_its_parts_and_writes_a_page(tmp_path, ca
     [
         (["figure 99"], "there is no 'figure 99'"),
         (["--paper", "Khalil"], "no paper is called 'Khalil'"),
-        (["38", "--html", "."], "cannot write the page"),
+        (["38", "--html", "."], "cannot write '.'; name a file"),
     ],
 )
 def test_check_refuses_what_is_not_there_and_exits_with_2(capsys, arguments, message):

@@ -36,10 +36,12 @@ from percept_obs import (
 from percept_obs.checking import target_of
 from percept_obs.exercises import derive, individual, reach, students_copy
 from percept_obs.exercises.copies import stub
+from percept_obs.exercises.models import notebooks
 from percept_obs.film import Board, example_film, read_film
 from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
 from percept_obs.papers import MA2005, find, judge
 from percept_obs.recording import Frames, render
+from percept_obs.recording.footage import Footage
 from percept_obs.recording.imu import Imu
 from percept_obs.recording.plausibility import Unlikely
 from percept_obs.recording.poses import Poses
@@ -56,6 +58,12 @@ SYSTEM, SEEN = PerspectiveSystem(affine(), pinhole()), record(scenarios.ma2005_e
 HOUSE, LINE, SOME = chwa2019_experiment("IV.A"), bearings_only(), np.random.default_rng(0)
 SAMPLED = affine(np.zeros((3, 3)), np.zeros((11, 3)), np.linspace(0, 1, 11))
 POSES = Poses([0, 1], [[0, 0, 0], [0, 0, 1]], [[0, 0, 0, 1]] * 2)
+
+
+def _task(rules):
+    said = {"tags": ["exercise"], "percept_obs": rules}
+    return {"cells": [{"cell_type": "markdown", "id": "task", "source": ["in 10 s"], "metadata": said}]}
+
 
 test_they_are_refused_with_what_to_do = refuses(
     lambda call: call(),
@@ -126,6 +134,26 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: cli.copy_notebooks("new", "parents"), "there are students, teachers"),
     (lambda: read_film(example_film(), Board(), PixelCamera((9, 9), (5, 5)), POSES), "leave one of them out"),
     (lambda: figures.depth_errors({"a": [-0.1]}, 2), "from 0 on"),
+    (lambda: students_copy({"cells": [{"cell_type": "code"}]}), "cell 1 is none of a notebook"),
+    (lambda: stub("x = "), "no Python"),
+    (lambda: individual(individual({"cells": []}, "Ada"), "Bob"), "Ada's own already"),
+    (lambda: individual(_task({"number": {}}), "Ada"), "there are letters, numbers, rubric"),
+    (lambda: individual(_task({"numbers": {"10": ["5", "15", "0", "in {} s"]}}), "Ada"), "a positive step"),
+    (lambda: individual(_task({"numbers": {"10": ["5", "15", "1", "for {} s"]}}), "Ada"), "the place 'for {} s'"),
+    (lambda: individual(students_copy(next(iter(notebooks().values()))), "Ada"), "the notebook with solutions"),
+    (lambda: derive("y1' = b1", SYSTEM, "y1'", letters={"b1": math.inf}), "no letter can have the factor of b1"),
+    (lambda: check(True, SYSTEM), "a bool is no formula"),
+    (lambda: target_of(b"x = 1"), "compared with the bytes"),
+    (lambda: judge([]), "no entry to judge"),
+    (lambda: figures.scene(SEEN).save("."), "cannot write '.'"),
+    (lambda: figures.runs_over_time([track(SEEN, ibo(BOTH))] * 2, ["a", "a"]), "a label of its own"),
+    (lambda: figures.cases({"a": []}), "'a': 'no run'"),
+    (lambda: observer_lab().save("lab.pdf"), "name 'lab.html', not 'lab.pdf'"),
+    (lambda: derivation_desk(hints={"rate": 2}), 'such as "rate 6"'),
+    (lambda: check(b"y1' = b1", SYSTEM), "a bytes is no formula"),
+    (lambda: Board().detect(np.zeros((0, 0), np.uint8)), "picture is an array of shape"),
+    (lambda: read_film(example_film(), camera=PixelCamera((9, 9), (5, 5), (19, 10))), "the film .640, 360."),
+    (lambda: Footage((SEEN,), ("stereo",), render(SEEN, 2, 32), "x"), "names of their distances"),
 )
 
 
@@ -142,6 +170,8 @@ def test_settings_that_were_read_back_may_do_nothing(make):
         ("exam a {}", "is a file"),
         ("lab --copy-only --student= new", "an empty name"),
         ("site --without-running --address here new", "it begins with https://"),
+        ("site --without-running --address http:// new", "it begins with https://"),
+        ("collect . -o marks.docx", "name 'marks.csv', not 'marks.docx'"),
     ],
 )
 def test_a_command_is_refused_before_it_works(command, said, tmp_path, monkeypatch, capsys):

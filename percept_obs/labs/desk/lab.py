@@ -77,6 +77,8 @@ class DerivationDesk(Lab):
         for key in settings["typed"]:
             if not re.fullmatch(rf"({'|'.join(PARTS)}) [1-9]\d? \S.*", key):
                 raise ValueError(f'typed has {key!r}; give the part, the step and the line, such as "rate 6 y1\'"')
+        if strange := [key for key in settings["hints"] if not re.fullmatch(rf"({'|'.join(PARTS)}) [1-9]\d?", key)]:
+            raise ValueError(f'hints has {strange[0]!r}; give the part and the step, such as "rate 6"')
         surface = settings["surface"]
         choices = self._given.output_choices if self._given else part("desk_lab")["surfaces"][surface]
         if settings["outputs"] not in [list(names) for names in choices]:

@@ -11,7 +11,6 @@ import weakref
 from collections.abc import Callable, Mapping
 from inspect import cleandoc
 from os import PathLike
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -31,7 +30,7 @@ from percept_obs.recording import Camera, Gaussian, Recording, Scenario, Uniform
 from percept_obs.system.surfaces import BehindCamera
 from percept_obs.system.view import DISTANCE
 from percept_obs.tracking.verdict import REMEDY, for_the_page
-from percept_obs.validation import checked, write_whole
+from percept_obs.validation import checked, to_write, write_whole
 
 BUNDLE = FRONT / "lab.js"
 """The page's side of all labs, built from ``front/src`` by ``npm run build``."""
@@ -240,7 +239,7 @@ class Lab(anywidget.AnyWidget):
         Raises
         ------
         ValueError
-            If the file is a folder, or its folder does not exist.
+            If the file is a folder, its folder does not exist, or its ending is another one.
 
         Examples
         --------
@@ -252,9 +251,7 @@ class Lab(anywidget.AnyWidget):
         >>> page.read_text("utf-8")[:15]
         '<!doctype html>'
         """
-        target = Path(file)
-        if target.is_dir() or not target.absolute().parent.is_dir():
-            raise ValueError(f"cannot write {target}: name a file in a folder that exists, such as lab.html")
+        target = to_write(file, ".html", ".htm")
         write_whole(target, page_of(self.get_state(), self.title).encode())
 
     def set_state(self, sync_data: dict[str, Any]) -> None:

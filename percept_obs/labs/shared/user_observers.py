@@ -133,7 +133,7 @@ def read_observers(values: Sequence[Any], known: Mapping[str, Any]) -> tuple[lis
                 raise ValueError(f"there is an observer {name} already; give yours another name")
             users[name] = UserObserver(name, value)
         else:
-            raise ValueError(f"{value!r} is no observer; bring its name, a function of a form, or an Observer")
+            raise ValueError(f"{described(value)} is no observer; bring its name, a function of a form, or an Observer")
         names.append(name)
     return names, users
 
