@@ -79,6 +79,8 @@ class Scenario(Scene):
 
     def __post_init__(self) -> None:
         vars(self)["position"] = self._check("position", self.position, ("X", "Y", "Z"))
+        if self.motion.b.rows != len(POINT):
+            raise ValueError(f"the {self.motion.name} motion is of {self.motion.b.rows} entries; a point has X, Y, Z")
         self.motion.refuse_unit(self.unit)
         self.surface.project(self.position)
 

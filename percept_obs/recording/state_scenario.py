@@ -68,6 +68,8 @@ class StateScenario(Scene):
     unit: float = 1.0
 
     def __post_init__(self) -> None:
+        if self.motion.parameters != self.seen.motion.parameters:
+            raise ValueError(f"the {self.motion.name} motion is none of {self.seen.name}; give {self.seen.motion.name}")
         set_fields(self, state=self._check("state", self.state, [symbol.name for symbol in self.seen.state]))
 
     @property
