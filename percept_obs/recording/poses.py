@@ -169,7 +169,7 @@ class Poses:
         Raises
         ------
         ValueError
-            If there are fewer than five poses.
+            If there are fewer than five poses, or they last too long for a path.
 
         Warns
         -----

@@ -53,7 +53,8 @@ class Scenario(Scene):
     BehindCamera
         If the point does not start in front of the camera.
     ValueError
-        If the position or the duration is not finite, or the duration not positive.
+        If the position or the duration is not finite, the duration not positive, or the motion not of a point or
+        without numbers.
 
     See Also
     --------

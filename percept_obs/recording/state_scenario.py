@@ -43,7 +43,7 @@ class StateScenario(Scene):
     Raises
     ------
     ValueError
-        If the state is not finite, or the duration not positive.
+        If the state is not finite, the duration not positive, or the motion without numbers or not of the view.
 
     See Also
     --------

@@ -28,8 +28,8 @@ def write_tracks(path: PathLike, recordings: Sequence[Recording], camera: PixelC
     Raises
     ------
     ValueError
-        If there are no recordings, their outputs differ, or pixels are asked for and it is no pinhole with both image
-        coordinates.
+        If there are no recordings, their outputs or views differ, the path is a folder, or pixels are asked for and it
+        is no pinhole with both image coordinates.
 
     See Also
     --------

@@ -133,7 +133,7 @@ def _outputs_of_pixels(table: TextTable, surface: ImagingSurface, camera: PixelC
     """Image coordinates on the surface, shape (K, m), of the columns of pixels; NaN where a pixel is."""
     columns = [table.numbers(name, "pixels") for name in pixels]
     outputs = np.full((len(columns[0]), len(surface.image_coordinates)), np.nan)
-    _ask_for_pixels(table.file, np.stack(columns, axis=-1), camera)
+    _ask_for_pixels(table.file, np.stack([column[:AT_ONCE] for column in columns], axis=-1), camera)
     for begin in range(0, len(outputs), AT_ONCE):
         part = slice(begin, begin + AT_ONCE)
         try:

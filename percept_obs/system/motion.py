@@ -168,7 +168,7 @@ def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: 
     Raises
     ------
     ValueError
-        If shapes do not match, values are not finite or times do not increase.
+        If shapes do not match, values are not finite, or times do not increase or are those of constants.
 
     See Also
     --------
