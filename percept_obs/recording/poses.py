@@ -184,7 +184,7 @@ class Poses:
         in state space models with incompletely specified initial conditions, The Annals of Statistics 13(4), 1985.
         """
         rows = (self.time[-1] - self.time[0]) / LIMITS.longest_row
-        limit(10 * rows, f"numbers of a path of {rows * LIMITS.longest_row:g} s", "give seconds, or cut the poses")
+        limit(rows, f"rows of a path of {rows * LIMITS.longest_row:g} s", "give seconds, or cut the poses")
         time, position, rotation = self._apart
         moving = (np.ptp(position, axis=0) > 0).any()
         again = (np.diff(position, axis=0) == 0).all(axis=1) & (np.diff(rotation.as_quat(), axis=0) == 0).all(axis=1)
