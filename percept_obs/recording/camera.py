@@ -264,6 +264,7 @@ class Scene(ABC):
             )
         if not (np.isfinite(self.duration) and self.duration > 0):
             raise ValueError(f"the duration is {self.duration} s; it must be positive")
+        self.known_motion.known(0.0)
         return tuple(array.tolist())
 
 

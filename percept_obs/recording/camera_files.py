@@ -80,6 +80,8 @@ def fields_of_camera(path: PathLike, camera: str | None) -> dict[str, Any]:
         distortion.pop()
     size = found.get("resolution") or [found.get(f"image_{side}") for side in ("width", "height")]
     size = None if None in size else size
+    if size is not None:
+        _numbers(file, {"size": size}, "size", 2)
     kind = "equidistant" if lens in LENSES[-2:] else "radtan"
     return {"focal": (fx, fy), "centre": (cx, cy), "size": size, "distortion": distortion, "lens": kind}
 

@@ -17,7 +17,7 @@ import numpy as np
 from percept_obs.compile import Array, Indices
 from percept_obs.recording import Recording
 from percept_obs.recording.pixels import Lens, PixelCamera
-from percept_obs.recording.poses import Poses
+from percept_obs.recording.poses import LIMITS, Poses
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike, existing
 from percept_obs.recording.track_table import refuse_parts, tracks_of_points
 from percept_obs.system.surfaces import pinhole
@@ -152,6 +152,10 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
         names = [head[9] for head in heads]
         numbers = np.array([head[1:8] for head in heads], dtype=float).reshape(len(heads), 7)
         used = {head[8] for head in heads}
+        if (np.abs(np.linalg.norm(numbers[:, :4], axis=1) - 1) > LIMITS.unit).any():
+            raise ValueError(
+                "images without a quaternion w, x, y, z of the length 1; write it after the image's number"
+            )
         if len(bodies) != len(heads) or not all(names) or len(heads) < 2:
             raise ValueError(f"{len(heads)} images, with {len(bodies)} rows of points; expected two images, and names")
         if len(used) > 1:
@@ -162,13 +166,16 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
         if model not in MODELS or model in OWN_LENS:
             told = ", ".join(name for name in MODELS if name not in OWN_LENS)
             raise ValueError(f"a camera of the model {model}, none of {told}: undistort the images")
+        if len(parameters) <= max(MODELS[model]):
+            raise ValueError(f"a camera {model} with {len(parameters)} parameters, not {max(MODELS[model]) + 1}")
         time = _times(names, rate, clock)
         fx, fy, cx, cy, *lens = (float(parameters[k]) for k in MODELS[model])
         lens = [*lens, *[0.0] * (-len(lens) % 4)]
         kind: Lens = "equidistant" if model in FISHEYES else "radtan"
         camera = PixelCamera((fx, fy), (cx, cy), (int(width), int(height)), lens, kind)
     except (ValueError, KeyError, IndexError, struct.error) as error:
-        raise ValueError(f"{os.fspath(folder)} is no model of COLMAP with one camera: it has {error}") from None
+        said = error if type(error) is ValueError else "a file that ends too early or does not fit the others"
+        raise ValueError(f"{os.fspath(folder)} is no model of COLMAP with one camera: it has {said}") from None
     order = np.argsort(time)
     turn = Poses(time[order], numbers[order, 4:], numbers[order][:, [1, 2, 3, 0]]).rotation.inv()
     poses = Poses(time[order], -turn.apply(numbers[order, 4:]), turn.as_quat())
@@ -195,6 +202,8 @@ def _text(place: Path) -> Parts:
     lenses = {row[0]: row[1:] for row in _rows(cameras, 5)}
     lines = _rows(images, 9, every=2)
     heads = [[*head[:9], " ".join(head[9:])] for head in lines[::2]]
+    if odd := [head[9] for head, row in zip(heads, lines[1::2], strict=False) if len(row) % 3]:
+        raise ValueError(f"below the image {odd[0]!r} a row that is not three numbers for each point: u, v, number")
     bodies = [np.array(row, dtype=float).reshape(-1, 3) for row in lines[1::2]]
     return lenses, heads, bodies, {int(row[0]): [float(cell) for cell in row[1:4]] for row in _rows(points, 4)}
 

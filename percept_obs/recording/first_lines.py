@@ -27,7 +27,8 @@ KINDS = MappingProxyType(
         "matrices": "matrices 4 x 4, 16 numbers a line: leave the last four out, and read it with read_kitti",
         "bag": "a bag of ROS: export its topic as a text file, for example with evo_traj bag FILE TOPIC --save_as_tum",
         "UTF-16": "text in UTF-16: save it as UTF-8",
-        "decimal commas": "a table of numbers with decimal commas: write points",
+        "decimal commas": "a table of numbers with decimal commas: write points, and commas or blanks between numbers",
+        "packed": "a workbook or another archive: save its table as CSV, or unpack it",
         "twelve": "12 numbers a line, whose first three of each four are no rotation, as they are in KITTI's poses",
         "seconds": "8 numbers with commas and times in seconds: TUM's have blanks between them, EuRoC's nanoseconds",
         "wide": "lines of over a hundred numbers, and no trajectory",
@@ -43,13 +44,16 @@ def kind_of(path: str | os.PathLike[str]) -> str:
         head = file.read(HEAD)
     if head.startswith((b"#ROSBAG", b"\x89MCAP")):
         return "bag"
+    if head.startswith((b"PK\3\4", b"\x1f\x8b")):
+        return "packed"
     if head.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "UTF-16"
     if b"\0" in head:
         return "binary"
     text = head.decode("utf-8-sig", errors="replace")
     line = next((line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")), "")
-    if line.count(",") > 1 and all(re.fullmatch(r"-?\d+(,\d+)?", cell) for cell in line.split()) and " " in line:
+    apart = re.split(r"[;\s]+", line.strip())
+    if line.count(",") > 1 and len(apart) > 1 and all(re.fullmatch(r"-?\d+(,\d+)?", cell) for cell in apart):
         return "decimal commas"
     cells = [cell for cell in re.split(r"[,\s]+", line) if cell]
     numbers = [_number(cell) for cell in cells]
@@ -69,7 +73,7 @@ def kind_of(path: str | os.PathLike[str]) -> str:
     if count == 12 and "," not in line:
         return "twelve"
     if "," in line:
-        poses = "seconds" if (numbers[0] or 0) < FIRST and "." in cells[0] else "EuRoC"
+        poses = "seconds" if (numbers[0] or 0) < FIRST and re.search(r"(?m)^\s*\d+\.", text) else "EuRoC"
         return "IMU" if count == 7 else poses if count >= 8 else ""
     return "TUM" if count >= 8 else "times" if count == 1 else ""
 

@@ -16,7 +16,7 @@ from percept_obs.recording.pose_files import read_euroc, read_kitti, read_tum
 from percept_obs.recording.poses import Poses
 from percept_obs.recording.text_table import PathLike, Repeated
 from percept_obs.system.motion import Motion
-from percept_obs.validation import checked
+from percept_obs.validation import checked, positive
 
 
 @checked
@@ -95,6 +95,7 @@ def read_folder(path: PathLike, rate: float | None = None, repeated: Repeated = 
     'This is a folder of TUM, with 81 poses in poses.txt.'
     """
     place = Path(path)
+    positive(rate=1.0 if rate is None else rate)
     if not os.path.isdir(place):
         raise FileNotFoundError(f"there is no folder {str(path)[:300]!r}; name one of COLMAP, EuRoC, TUM or KITTI")
     readers = {"COLMAP": _colmap, "EuRoC": _euroc, "KITTI": _kitti, "TUM": _tum}

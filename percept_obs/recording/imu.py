@@ -9,10 +9,11 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.recording.camera import Seed, _Noise, seeded
+from percept_obs.recording.plausibility import Unlikely
 from percept_obs.recording.text_table import NANOSECONDS, Clock, PathLike, Repeated, read_table
 from percept_obs.system.inertial import b_a, b_w, imu
 from percept_obs.system.motion import Motion
-from percept_obs.validation import checked, limit, positive
+from percept_obs.validation import checked, limit, positive, warn
 
 NAMES = ("t", "w_x", "w_y", "w_z", "a_x", "a_y", "a_z")
 EXAMPLE = "1403636579758555392,-0.0991,0.1472,0.0272,8.1476,-0.3759,-2.4026"
@@ -122,7 +123,8 @@ def read_imu(path: PathLike, clock: Clock = NANOSECONDS, repeated: Repeated = "r
     table = read_table(path, NAMES, ",", EXAMPLE, kind="IMU")
     columns = np.stack([table.numbers(name, gaps=False) for name in NAMES[1:]], axis=-1)
     time, kept = table.steps(NAMES[0], clock, repeated)
-    try:
-        return imu(columns[kept, :3], columns[kept, 3:], time)
-    except ValueError as error:
-        raise ValueError(f"{table.file}: {error}") from None
+    force = float(np.median(np.linalg.norm(columns[kept, 3:], axis=1)))
+    if not 3 < force < 20:
+        said = f"{table.file} has a specific force of typically {force:.3g} m/s^2, and at rest it is 9.8"
+        warn(Unlikely(f"{said}: are its columns {', '.join(NAMES)}, in rad/s and m/s^2?"))
+    return imu(columns[kept, :3], columns[kept, 3:], time)

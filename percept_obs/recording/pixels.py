@@ -105,6 +105,8 @@ class PixelCamera:
                 f"numbers, {self._coefficients}, or none"
             )
         vars(self)["distortion"] = tuple(lens.tolist())
+        if 50 * min(self.focal) < max(self.centre):  # it would see all around
+            warn(Unlikely(f"focal is {self.focal} and centre {self.centre}; are these pixels, and none millimetres?"))
         if not self.sees(self.centre):
             warn(Unlikely(f"the centre {self.centre} is outside of the image {self.size}; are both of one size?"))
 

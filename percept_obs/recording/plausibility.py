@@ -16,9 +16,19 @@ LARGEST_USUAL = 20.0
 LONG_GAP = 10
 """Usual intervals of a sampled motion that make a gap: clocks that stumble skip fewer."""
 
+SHORTEST_STEP, USUAL_STEP, LONGEST_STEP = 1e-5, 0.03, 20.0
+"""Seconds between two rows of a trajectory or an IMU: what is shorter or longer was counted in another unit."""
+
 
 class Unlikely(UserWarning):
     """A recording can be followed, but is hardly what was meant."""
+
+
+def ask_for_seconds(times: Array, what: str) -> None:
+    """Warn of times that are hardly seconds; a few may lie far apart."""
+    step = float(np.median(np.diff(times))) if len(times) > 5 else SHORTEST_STEP
+    if not SHORTEST_STEP <= step <= LONGEST_STEP:
+        warn(Unlikely(f"{what} has {step:.3g} s from one sample to the next; are its times seconds?"))
 
 
 def warn_if_implausible(time: Array, outputs: Array, names: tuple[str, ...], view: View, motion: Motion) -> None:
@@ -34,6 +44,7 @@ def warn_if_implausible(time: Array, outputs: Array, names: tuple[str, ...], vie
     times = None if motion.signal is None else motion.signal.times
     if times is None or len(times) < 3:
         return
+    ask_for_seconds(times, f"the {motion.name} motion")
     intervals = np.diff(times)
     usual = np.median(intervals)
     gaps = np.flatnonzero((intervals > LONG_GAP * usual) & (times[1:] > time[0]) & (times[:-1] < time[-1]))

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array
-from percept_obs.recording.plausibility import Unlikely
+from percept_obs.recording.plausibility import Unlikely, ask_for_seconds
 from percept_obs.recording.pose_errors import PoseErrors
 from percept_obs.recording.smoother import FEWEST, Smoothed, smooth, smooth_turns
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import readonly
-from percept_obs.validation import checked, numbers, warn
+from percept_obs.validation import checked, limit, numbers, warn
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -111,6 +111,7 @@ class Poses:
                 f"the poses' times must increase strictly; look at row {late.argmax() + 2}, "
                 f"{float(time[late.argmax() + 1])!r} s: sort the rows and remove repeated ones"
             )
+        ask_for_seconds(time, "a list of poses")
         vars(self).update(time=readonly(time), position=readonly(position), orientation=readonly(_quaternions(turns)))
 
     @cached_property
@@ -148,6 +149,8 @@ class Poses:
                 f"the position has shape {place.shape}, the orientation {turn.shape}, the shift is {shift} s; expected "
                 "(3,), and (4,) of a quaternion x, y, z, w or (3, 3) of a matrix, all finite"
             )
+        if (away := float(np.linalg.norm(place))) > 10:  # robots and cars are smaller
+            warn(Unlikely(f"the camera sits {away:.3g} m from its body's origin; is its position in millimetres?"))
         mount = Poses(np.arange(2.0), np.tile(place, (2, 1)), np.stack([turn, turn]))
         place, turned = mount.position[0], mount.rotation[0]
         matrix = turned.as_matrix()
@@ -166,7 +169,7 @@ class Poses:
         Raises
         ------
         ValueError
-            If there are fewer than five poses.
+            If there are fewer than five poses, or they last too long for a path.
 
         Warns
         -----
@@ -180,6 +183,8 @@ class Poses:
         follow from the poses, by their likelihood.  C. F. Ansley and R. Kohn, Estimation, filtering, and smoothing
         in state space models with incompletely specified initial conditions, The Annals of Statistics 13(4), 1985.
         """
+        rows = (self.time[-1] - self.time[0]) / LIMITS.longest_row
+        limit(rows, f"rows of a path of {rows * LIMITS.longest_row:g} s", "give seconds, or cut the poses")
         time, position, rotation = self._apart
         moving = (np.ptp(position, axis=0) > 0).any()
         again = (np.diff(position, axis=0) == 0).all(axis=1) & (np.diff(rotation.as_quat(), axis=0) == 0).all(axis=1)

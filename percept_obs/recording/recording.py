@@ -436,7 +436,8 @@ class Recording:
         BehindCamera
             If a distance is not positive.
         ValueError
-            If a column is missing, a cell is not a number, the clocks do not overlap, or the rows are no recording.
+            If a column is missing or named twice, a cell is not a number, the clocks do not overlap, or the rows are no
+            recording.
 
         See Also
         --------

@@ -150,7 +150,7 @@ def held_phone(imu: Imu | None = None, seed: Seed = 0, shake: float = 1.0, begin
     Raises
     ------
     ValueError
-        If the shake is not finite, or begins before 0.
+        If the shake is negative or not finite, or begins before 0 or after the end.
 
     See Also
     --------
@@ -163,9 +163,9 @@ def held_phone(imu: Imu | None = None, seed: Seed = 0, shake: float = 1.0, begin
     >>> (1 / recording.truth[[0, -1], -1]).round(2).tolist()
     [3.0, 2.72]
     """
-    if not (np.isfinite(shake) and begin >= 0):
-        raise ValueError(f"the shake is {shake} and begins at {begin} s; it must be finite, and begin at 0 or later")
     errors, duration = imu or Imu(), 12.0
+    if not (0 <= shake < np.inf and 0 <= begin < duration):
+        raise ValueError(f"the shake is {shake} from {begin} s on; it must be finite from 0 on, and begin within 12 s")
     times = np.arange(0, duration + 1, 0.005)
     rates, phases = np.array([2.0, 3.0, 2.5]), np.array([0.0, 1.0, 2.0])
     world = -shake * (times >= begin)[:, None] * np.sin(np.outer(times, rates) + phases)

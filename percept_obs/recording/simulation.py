@@ -53,7 +53,8 @@ class Scenario(Scene):
     BehindCamera
         If the point does not start in front of the camera.
     ValueError
-        If the position or the duration is not finite, or the duration not positive.
+        If the position or the duration is not finite, the duration not positive, or the motion not of a point or
+        without numbers.
 
     See Also
     --------
@@ -79,6 +80,8 @@ class Scenario(Scene):
 
     def __post_init__(self) -> None:
         vars(self)["position"] = self._check("position", self.position, ("X", "Y", "Z"))
+        if self.motion.b.rows != len(POINT):
+            raise ValueError(f"the {self.motion.name} motion is of {self.motion.b.rows} entries; a point has X, Y, Z")
         self.motion.refuse_unit(self.unit)
         self.surface.project(self.position)
 

@@ -43,7 +43,7 @@ class StateScenario(Scene):
     Raises
     ------
     ValueError
-        If the state is not finite, or the duration not positive.
+        If the state is not finite, the duration not positive, or the motion without numbers or not of the view.
 
     See Also
     --------
@@ -68,6 +68,8 @@ class StateScenario(Scene):
     unit: float = 1.0
 
     def __post_init__(self) -> None:
+        if self.motion.parameters != self.seen.motion.parameters:
+            raise ValueError(f"the {self.motion.name} motion is none of {self.seen.name}; give {self.seen.motion.name}")
         set_fields(self, state=self._check("state", self.state, [symbol.name for symbol in self.seen.state]))
 
     @property

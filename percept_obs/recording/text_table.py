@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from csv import reader
@@ -18,16 +19,13 @@ import numpy as np
 
 from percept_obs.compile import Array, Flags
 from percept_obs.recording.first_lines import refuse_others
-from percept_obs.recording.plausibility import Unlikely
+from percept_obs.recording.plausibility import LONGEST_STEP, SHORTEST_STEP, USUAL_STEP, Unlikely
 from percept_obs.validation import checked, load_pandas, warn
 
 PathLike = str | os.PathLike[str]
 
 LARGEST_POWER = 300
 """Largest power of ten of a clock's reading, near that of a float."""
-
-SHORTEST_STEP, USUAL_STEP, LONGEST_STEP = 1e-5, 0.03, 20.0
-"""Seconds between two rows of a trajectory or an IMU: what is shorter or longer was counted in another unit."""
 
 LATEST = 1e11
 """Seconds that no clock shows, 3,000 years."""
@@ -164,11 +162,14 @@ class TextTable:
             if repeated == "refuse":
                 raise ValueError(f'{said}, the first is row {again.argmax() + 1}; repeated="drop" leaves them out')
             warn(Unlikely(f"{said}, and are left out"))
+        if (late := np.diff(kept) < 0).any():
+            row = int(np.flatnonzero(~again)[late.argmax() + 1])
+            raise ValueError(f"{self.file}: times must increase strictly; look at row {row + 1}, and sort the rows")
         if not SHORTEST_STEP <= step <= LONGEST_STEP or np.abs(kept).max() > LATEST:
             unit = min(TICKS, key=lambda unit: abs(math.log(step / clock.tick * TICKS[unit] / USUAL_STEP)))
             raise ValueError(
                 f"{self.file} has times up to {kept[-1]:.4g} s, with {step:.3g} s from row to row, which cannot be; if "
-                f"they are {unit}, give clock=Clock(tick={TICKS[unit]:g})"
+                f"they are {unit}, give clock=Clock(tick={TICKS[unit]:g}), or write seconds where a reader has no clock"
             )
         return kept, ~again
 
@@ -208,6 +209,8 @@ def read_table(
             (cells,) = reader([first], skipinitialspace=True)
             header = [cell.strip() or f"Unnamed: {k}" for k, cell in enumerate(cells)]
             layout["names"] = header
+            if len(header) == 1 and first.strip():
+                raise ValueError(f"a single column, {first.strip()!r}; put commas between cells, points into numbers")
         if repeated := {name for name in header if header.count(name) > 1}:
             raise ValueError(f"two columns of one name, {', '.join(sorted(repeated))}, among {', '.join(header)}")
         if header and separator == ",":
@@ -225,9 +228,8 @@ def read_table(
         if len(rows.columns) < len(names):
             raise ValueError(f"{len(rows.columns)} columns, and {len(names)} are needed: {', '.join(names)}")
     except (pd.errors.EmptyDataError, pd.errors.ParserError, UnicodeDecodeError) as error:
-        raise ValueError(
-            f"{file} is no table of text ({str(error).strip()}); expected rows such as {example}"
-        ) from None
+        said = re.sub(r".*Expected (\d+) fields .* saw (\d+)", r"rows with \1 and with \2 cells", str(error).strip())
+        raise ValueError(f"{file} is no table of text ({said}); expected rows such as {example}") from None
     except ValueError as error:
         raise ValueError(f"{file} has {error}; expected rows such as {example}") from None
     columns = zip(names or header, (rows[name] for name in rows.columns), strict=False)

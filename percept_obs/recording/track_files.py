@@ -28,8 +28,8 @@ def write_tracks(path: PathLike, recordings: Sequence[Recording], camera: PixelC
     Raises
     ------
     ValueError
-        If there are no recordings, their outputs differ, or pixels are asked for and it is no pinhole with both image
-        coordinates.
+        If there are no recordings, their outputs or views differ, the path is a folder, or pixels are asked for and it
+        is no pinhole with both image coordinates.
 
     See Also
     --------
@@ -56,6 +56,8 @@ def write_tracks(path: PathLike, recordings: Sequence[Recording], camera: PixelC
     for each in recordings:
         if (each.names, set(each.distances)) != (first.names, set(first.distances)):
             raise ValueError(f"the recordings {first.source!r} and {each.source!r} have different outputs or distances")
+        if not each.view.fits(first.view):
+            raise ValueError(f"the recordings are of the {first.view.name} and the {each.view.name}; write two files")
         if each.outputs.ndim != 2:
             raise ValueError(f"the recording {each.source!r} is of several points; a table has recordings of one point")
     if camera is not None and (first.imaging_surface.name, first.names) != ("pinhole", ("y1", "y2")):

@@ -13,7 +13,7 @@ import numpy as np
 
 from percept_obs.compile import Array, Flags, Indices
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.recording.plausibility import Unlikely
+from percept_obs.recording.plausibility import LARGEST_USUAL, Unlikely
 from percept_obs.recording.text_table import Clock, PathLike, TextTable, read_table
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import slack_of
@@ -57,6 +57,9 @@ def fields_of_recordings(
     inverse = surface.inverse_distance.name
     example = ",".join([time, *([point] if point else []), *(pixels if camera else every)])
     wanted = {*(pixels if camera else every), *([] if depth else [inverse]), *distances, *([depth] if depth else [])}
+    kept = {time, point, inverse, *(pixels if camera else every)}
+    if taken := sorted(kept.intersection([depth, *distances]) - {None}):
+        raise ValueError(f"the column {taken[0]!r} is read as something else; name one of distances in metres")
     table = read_table(path, example=example, numbers=sorted(wanted - {time, point}))
     _refuse_misspelt(table, [*(() if camera else every), *(() if depth else [inverse])])
     times = table.seconds(time, clock)
@@ -130,6 +133,7 @@ def _outputs_of_pixels(table: TextTable, surface: ImagingSurface, camera: PixelC
     """Image coordinates on the surface, shape (K, m), of the columns of pixels; NaN where a pixel is."""
     columns = [table.numbers(name, "pixels") for name in pixels]
     outputs = np.full((len(columns[0]), len(surface.image_coordinates)), np.nan)
+    _ask_for_pixels(table.file, np.stack([column[:AT_ONCE] for column in columns], axis=-1), camera)
     for begin in range(0, len(outputs), AT_ONCE):
         part = slice(begin, begin + AT_ONCE)
         try:
@@ -139,6 +143,15 @@ def _outputs_of_pixels(table: TextTable, surface: ImagingSurface, camera: PixelC
         seen = np.isfinite(image).all(axis=1)
         outputs[part][seen] = surface.project(np.column_stack([image[seen], np.ones(seen.sum())]))[:, :-1]
     return outputs
+
+
+def _ask_for_pixels(file: str, pixels: Array, camera: PixelCamera) -> None:
+    """Warn if most pixels lie outside of a camera's image, or in its corner as image coordinates do."""
+    pixels = pixels[np.isfinite(pixels).all(axis=1)]
+    corner = (np.abs(pixels) < 2).all(axis=1) & (min(camera.focal) > LARGEST_USUAL)
+    if len(pixels) and np.mean(corner | ~camera.sees(pixels)) > 0.5:
+        said = f"{file}: most pixels lie outside of the image {camera.size or ''} or in its corner"
+        warn(Unlikely(f"{said}; are they of this camera?  For image coordinates leave camera= out"))
 
 
 def _distances(table: TextTable, name: str, meaning: str) -> Array:
@@ -206,8 +219,8 @@ def tracks_of_points(
             found.append((rows[known[rows] & (rows >= part[0]) & (rows <= part[-1])], name))
     if not found:
         raise ValueError(
-            f"{file} has no point that is seen twice with a gap of at most {gap:g} s, and at shortest for "
-            f"{shortest:g} s; is {column!r} the column of the points, and are there samples?"
+            f"{file} has no point that is seen twice with a gap of at most {gap:g} s, and for {shortest:g} s at least; "
+            f"take a longer gap, a smaller shortest, or another column of the points than {column!r}"
         )
     if single and not shortest:
         warn(Unlikely(f"{file}: {single} sightings of a single sample are left out, for nothing follows from one"))

@@ -132,10 +132,10 @@ class Motion:
         It raises ValueError if the motion has symbols without numbers, or a time lies outside the known ones.
         """
         if self.signal is None:
-            if self.parameters:
+            if names := ", ".join(map(str, self.parameters)):
+                remedy = "write the time as percept_obs.system.motion.TIME" if names == "t" else "build it with numbers"
                 raise ValueError(
-                    f"the {self.name} motion has no values for {', '.join(map(str, self.parameters))}; "
-                    "build it with numbers, for instance affine(A, b)"
+                    f"the {self.name} motion has no values for {names}; {remedy}, for instance affine(A, b)"
                 )
             return np.zeros((1, 0))
         rows = self.signal.at(times)
@@ -168,7 +168,7 @@ def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: 
     Raises
     ------
     ValueError
-        If shapes do not match, values are not finite or times do not increase.
+        If shapes do not match, values are not finite, or times do not increase or are those of constants.
 
     See Also
     --------
@@ -356,6 +356,8 @@ def bound(
     times = None if times is None else np.atleast_1d(np.asarray(times, dtype=float))
     if times is not None and not times.size:
         raise ValueError("the times of the motion are empty; give one for each sample, or leave times out")
+    if times is not None and all(np.shape(value) == _shape(block) for value, block in coefficients):
+        raise ValueError("times are those of samples, and the motion is constant; leave times out, or give arrays")
     count = 1 if times is None else len(times)
     motion = Motion(name, A, b, symbols, Signal(np.hstack([_rows(*each, count) for each in coefficients]), times))
     ask_for_degrees(motion, 0.0 if times is None else times)
@@ -379,12 +381,13 @@ def coefficients(motion: Motion, known: Array) -> tuple[Array, Array]:
 
 
 def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:
-    """Warn of an angular velocity, read from the first three states, that may be in degrees."""
+    """Warn of an angular velocity of three states, such as those of a point, that may be in degrees."""
     A = motion.A
     if A.shape[0] < 3 or motion.signal is None:
         return
-    spin = [(A[i, j] - A[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0))]
-    turning = np.stack(vectorised(motion.parameters, spin)(*motion.known(times).T), axis=-1)
+    blocks = dict.fromkeys(A[k : k + 3, k : k + 3] for k in range(0, A.shape[0] - 2, 3))
+    spin = [(block[i, j] - block[j, i]) / 2 for block in blocks for i, j in ((2, 1), (0, 2), (1, 0))]
+    turning = np.stack(vectorised(motion.parameters, spin)(*motion.known(times).T), axis=-1).reshape(-1, 3)
     fastest = float(np.linalg.norm(turning, axis=-1).max(initial=0)) if motion.parameters else 0.0
     if fastest > LARGEST_TURNING:
         warn(

@@ -68,6 +68,8 @@ def write_whole(target: Path, content: bytes) -> None:
     """Write a file under another name and rename it, so that half a file is never found."""
     if not target.parent.is_dir():
         raise FileNotFoundError(f"the folder of '{target}' is not there; name a file in one that is")
+    if target.is_dir():
+        raise ValueError(f"'{target}' is a folder; name a file in it")
     other = target.with_name(f".{target.name}.{os.getpid()}")
     try:
         other.write_bytes(content)

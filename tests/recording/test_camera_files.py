@@ -234,7 +234,7 @@ def test_a_binary_model_is_that_in_text(tmp_path):
     assert found.sentence == f"This is a folder of COLMAP, with 40 images, 3 points in {tmp_path}."
     fisheye = read_colmap(pack_colmap(tmp_path, tmp_path / "fisheye", 5), rate=20).camera
     assert (fisheye.lens, fisheye.distortion) == ("equidistant", text.camera.distortion)
-    for cut, message in ((20, "no model of COLMAP"), (-3, "no model of COLMAP")):
+    for cut, message in ((20, "ends too early"), (-3, "no model of COLMAP")):
         (tmp_path / "sparse" / "images.bin").write_bytes((tmp_path / "sparse" / "images.bin").read_bytes()[:cut])
         with pytest.raises(ValueError, match=message):
             read_colmap(tmp_path / "sparse", rate=20)
@@ -253,6 +253,7 @@ def test_times_are_read_from_the_names_of_images(tmp_path):
     [
         ({"model": "FOV 752 480 1 1 0 0 0"}, {"rate": 20}, "model FOV, none of SIMPLE_PIN"),
         ({"model": "PINHOLE 752 480 wide 1 0 0"}, {"rate": 20}, "is no model of COLMAP"),
+        ({"model": "OPENCV_FISHEYE 752 480 500 500 320 240"}, {"rate": 20}, "with 4 parameters, not 8"),
         ({"names": ["a.png"] * 40}, {}, "image 'a.png' without a number for its time; give its rate"),
         ({"names": ["1.png"] * 40}, {}, "images with the same time"),
         ({"names": [""] * 40}, {"rate": 20}, "expected two images, and names"),

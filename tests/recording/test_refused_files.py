@@ -55,6 +55,7 @@ TABLE = "time,id,u,v,depth\n0,a,300,200,2\n0.1,a,301,200,2\n0.2,a,302,200,2\n"
     [
         (TABLE, "", "is no table of text .*expected rows such as time,id,u,v"),
         (TABLE, TABLE[:18], "header and no rows"),
+        (TABLE, TABLE.replace(",", ";"), "put commas between"),
         ("301", "inf", "'inf' in row 2 of the column 'u'; write"),
         ("301", "left", "'left' in row 2 of the column 'u'; write"),
         ("0.1,a", ",a", "column 'time': row 2 has the time ''"),

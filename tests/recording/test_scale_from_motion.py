@@ -117,7 +117,7 @@ def test_one_landmark_and_a_telephone_s_imu_with_unknown_biases_find_the_scale()
         assert run.relative_error[300] < 0.02
 
 
-@pytest.mark.parametrize("wrong", [{"shake": np.inf}, {"begin": -1.0}])
+@pytest.mark.parametrize("wrong", [{"shake": np.inf}, {"shake": -1.0}, {"begin": -1.0}, {"begin": 30.0}])
 def test_a_shake_that_cannot_be_is_refused(wrong):
     with pytest.raises(ValueError, match="it must be finite"):
         scenarios.held_phone(**wrong)

@@ -30,7 +30,7 @@ def euroc(time=tuple(NANOS)):
 
 
 def imu(time=tuple(NANOS)):
-    return rows(time, np.ones((20, 6)), separator=",")
+    return rows(time, 5 * np.ones((20, 6)), separator=",")
 
 
 def kitti():

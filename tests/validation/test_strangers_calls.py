@@ -26,10 +26,12 @@ from percept_obs import (
     ibo,
     instantaneous,
     pinhole,
+    read_folder,
     read_tum,
     record,
     rigid,
     scenarios,
+    sphere,
     track,
     windowed,
 )
@@ -42,10 +44,12 @@ from percept_obs.labs import derivation_desk, observer_lab, points_lab, structur
 from percept_obs.papers import MA2005, find, judge
 from percept_obs.recording import Frames, render
 from percept_obs.recording.footage import Footage
-from percept_obs.recording.imu import Imu
+from percept_obs.recording.imu import Imu, read_imu
 from percept_obs.recording.plausibility import Unlikely
 from percept_obs.recording.poses import Poses
 from percept_obs.recording.recording import Sighting
+from percept_obs.recording.track_files import write_tracks
+from percept_obs.recording.worked import WORKED_CAMERA, worked_folder
 from percept_obs.structure import GivenDepth, PatchDepth, ScaledDepthCamera, grid_patch, seen_as
 from percept_obs.structure.pixels import SignalToNoise
 from percept_obs.structure.scenarios import chwa2019_experiment
@@ -154,6 +158,16 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: Board().detect(np.zeros((0, 0), np.uint8)), "picture is an array of shape"),
     (lambda: read_film(example_film(), camera=PixelCamera((9, 9), (5, 5), (19, 10))), "the film .640, 360."),
     (lambda: Footage((SEEN,), ("stereo",), render(SEEN, 2, 32), "x"), "names of their distances"),
+    (lambda: affine(np.zeros((3, 3)), np.zeros(3), [0, 1, 2]), "the motion is constant"),
+    (lambda: replace(scenarios.planar(), motion=affine()), "has no values for a11"),
+    (lambda: replace(scenarios.planar(), motion=scenarios.own_ship_turns().motion), "a point has X, Y, Z"),
+    (lambda: replace(scenarios.own_ship_turns(), motion=SAMPLED), "is none of bearing alone"),
+    (lambda: Poses([0, 1e12], POSES.position, POSES.orientation).path(), "give seconds, or cut"),
+    (lambda: read_folder(worked_folder(), rate=-5), "rate is -5"),
+    (lambda: write_tracks(worked_folder(), [SEEN]), "is a folder"),
+    (lambda: write_tracks("w.csv", [SEEN, record(scenarios.ma2005_eq35(sphere()), 1)]), "write two files"),
+    (lambda: Recording.from_csv(worked_folder() / "tracks.csv", SEEN.motion, depth="time"), "is read as something"),
+    (lambda: read_tum(worked_folder() / "tracks.csv"), "rows with 1 and with 3 cells"),
 )
 
 
@@ -192,7 +206,9 @@ def test_settings_that_are_changed_in_place_say_how_to_set_them():
     [
         ("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n".encode("utf-16"), "save it as UTF-8"),
         (b"0,5 0,1 0,2 0 0 0 0 1\n", "decimal commas"),
-        (b"0.5,0.1,0.2,0,0,0,0,1\n", "TUM's have blanks"),
+        (b"0,0.1,0.2,0,0,0,0,1\n0.5,0.1,0.2,0,0,0,0,1\n", "TUM's have blanks"),
+        (b"0;0,0;0,1;0,0;0,0;0,0;9,8\n", "decimal commas"),
+        (b"PK\3\4", "save its table as CSV"),
         (b"1 " * 2000 + b"\n", "over a hundred numbers"),
         (b"2 0 0 0 0 1 0 0 0 0 1 0\n", "no rotation"),
     ],
@@ -214,9 +230,21 @@ def test_the_content_of_a_file_is_no_path_to_it():
         read_tum("0 0 0 0 0 0 0 1\n" * 300)
 
 
-def test_a_camera_of_another_size_is_suspicious():
-    with pytest.warns(Unlikely, match="are both of one size"):
-        PixelCamera((500, 500), (3200, 2400), (640, 480))
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda _: PixelCamera((500, 500), (3200, 2400), (640, 480)), "are both of one size"),
+        (lambda _: PixelCamera((0.004, 0.004), (320, 240)), "are these pixels"),
+        (lambda _: POSES.mounted([0, 0, 65], [0, 0, 0, 1]), "in millimetres"),
+        (lambda _: Poses(50.0 * np.arange(6), np.zeros((6, 3)), [[0, 0, 0, 1]] * 6), "are its times seconds"),
+        (lambda file: Recording.from_csv(file, SEEN.motion, camera=WORKED_CAMERA), "in its corner"),
+        (read_imu, "at rest it is 9.8"),
+    ],
+)
+def test_what_is_hardly_meant_is_suspicious(call, said, tmp_path):
+    (tmp_path / "file.csv").write_text("0,0,0,0,0,0,1\n" if call is read_imu else "time,u,v\n0,0.1,0.2\n1,0.1,0.2\n")
+    with pytest.warns(Unlikely, match=said):
+        call(tmp_path / "file.csv")
 
 
 def test_a_setting_is_no_attribute_of_a_lab():
