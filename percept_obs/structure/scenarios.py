@@ -8,13 +8,11 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from percept_obs.structure.corollaries import COROLLARIES
 from percept_obs.structure.simulation import StructureScenario
 from percept_obs.system.motion import rigid
 from percept_obs.system.surfaces import pinhole
-from percept_obs.validation import checked
+from percept_obs.validation import checked, numbers
 
 _STILL = (0.0, 0.0, 0.0)
 
@@ -110,7 +108,7 @@ def chwa2019_simulation(section: str, chwa_rotation: Sequence[float] = _STILL) -
     Raises
     ------
     ValueError
-        If there is no such case, or w3 is not positive.
+        If there is no such case, or w has not three components or w3 is not positive.
 
     See Also
     --------
@@ -123,7 +121,7 @@ def chwa2019_simulation(section: str, chwa_rotation: Sequence[float] = _STILL) -
     [[0.4, 0.4, 0.05], [0.091, 0.182, 0.045]]
     """
     number, camera, object_ = _stated(section, _CHWA_SIMULATION)
-    w = np.asarray(chwa_rotation, dtype=float)
+    w = numbers(chwa_rotation, "components of chwa_rotation", 3)
     image = (0.4, 0.4)
     if w.any():
         if not w[2] > 0:

@@ -24,7 +24,7 @@ from percept_obs.system.view import refuse_several
 from percept_obs.tracking.following import AnyObserver, StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import bar, checked, load_pandas
+from percept_obs.validation import bar, checked, each_once, load_pandas
 
 __all__ = ["Comparison", "compare", "over_bound", "relative_distance_errors"]
 
@@ -264,7 +264,7 @@ def compare(
     Raises
     ------
     ValueError
-        If recordings or observers are none or do not fit, one has no truth or several points, or a column is taken.
+        If recordings or observers are none, recur or do not fit, one has no truth or many points, or a column is taken.
 
     See Also
     --------
@@ -285,6 +285,7 @@ def compare(
         observers = dict(zip(names, observers, strict=True))
     if not len(recordings) or not observers:
         raise ValueError(f"{len(recordings)} recordings and {len(observers)} observers: at least one of each is needed")
+    each_once(recordings, "recording")
     for recording in recordings:
         refuse_several("a comparison", recording.view)
     if clash := {*(columns or {})} & {*ABOUT, "outcome", "settling_time", "final", "rms", "worst", "cost"}:

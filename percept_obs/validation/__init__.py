@@ -2,6 +2,7 @@
 
 from percept_obs.validation.arguments import WrongKind as WrongKind
 from percept_obs.validation.arguments import checked as checked
+from percept_obs.validation.arguments import each_once as each_once
 from percept_obs.validation.arguments import numbers as numbers
 from percept_obs.validation.arguments import one_of as one_of
 from percept_obs.validation.arguments import positive as positive

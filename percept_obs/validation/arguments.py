@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import reprlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import is_dataclass
 from functools import cache, wraps
 from numbers import Real
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percept_obs.validation.environment import load_pandas
-from percept_obs.validation.kinds import FLOAT, Kind, are_numbers, is_real, kind_of, with_article
+from percept_obs.validation.kinds import FLOAT, NDARRAY, Kind, are_numbers, is_real, kind_of, with_article
 from percept_obs.validation.travel import travels
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
@@ -98,6 +98,8 @@ def _guarded(function: Any, name: str, annotated: Any) -> Any:
         for key in kinds.keys() & bound.arguments.keys():
             if _is_meant_as_float(bound.arguments[key], kinds[key]):
                 bound.arguments[key] = float(bound.arguments[key])
+            elif isinstance(bound.arguments[key], list | tuple) and NDARRAY in (kinds[key], *kinds[key].alternatives):
+                bound.arguments[key] = np.asarray(bound.arguments[key])
         if all(isinstance(each, str) or _decides(each, by_type) for each in types):
             passed.add(types)
         return function(*bound.args, **bound.kwargs)
@@ -153,7 +155,7 @@ def _message(function: str, argument: str, value: Any, kind: Kind, parameter: in
     remedy = f"pass for example {kind.example}" if kind.example else ""
     if parameter and parameter.kind is parameter.VAR_POSITIONAL and isinstance(value, list | tuple):
         remedy = f"pass its entries one by one: {function}({', '.join(map(repr, value))})"
-    elif isinstance(value, FunctionType) or hasattr(value, "__signature__"):
+    elif (isinstance(value, FunctionType) or hasattr(value, "__signature__")) and "function" not in kind.label:
         needed = [p.name for p in inspect.signature(value).parameters.values() if p.default is p.empty and p.kind < 2]
         remedy = f"call it: {value.__name__}({', '.join(needed)})"
     elif any(entry.fits(value) for entry in kind.entries):
@@ -213,6 +215,13 @@ def one_of(count: int, **places: int) -> None:
     for name, place in places.items():
         if place != int(place) or not 0 <= place < count:
             raise ValueError(f"{name} is {place}; there are {count}, from 0 to {count - 1}")
+
+
+def each_once(things: Iterable[Any], name: str) -> None:
+    """Refuse a thing that is given twice among several, by the name of their kind."""
+    kept = list(things)
+    if len(set(map(id, kept))) < len(kept):
+        raise ValueError(f"a {name} is given twice, and would count for two; give each once")
 
 
 def positive(**values: float) -> None:

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from inspect import CO_VARARGS
 from numbers import Integral, Real
-from types import MappingProxyType, NoneType, UnionType
+from types import FunctionType, MappingProxyType, NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import numpy as np
@@ -87,6 +88,14 @@ def is_real(value: Any) -> bool:
     return not isinstance(value, int | Fraction) or bool(-LARGEST_FLOAT < value < LARGEST_FLOAT)
 
 
+def _takes(function: Any, count: int | None) -> bool:
+    """Return True unless a function that is written in Python takes another number of arguments."""
+    if count is None or not isinstance(function, FunctionType):
+        return True
+    code, defaults = function.__code__, function.__defaults__ or ()
+    return code.co_argcount - len(defaults) <= count and (code.co_flags & CO_VARARGS or count <= code.co_argcount) > 0
+
+
 def _is_expression(value: Any) -> bool:
     return isinstance(value, sp.Expr) or is_real(value)
 
@@ -115,6 +124,7 @@ Coefficients = Annotated[
 
 FLOAT = Kind("a real number", lambda v: is_real(v) and v == v, by_type=True)
 ARRAY = Kind("an array of real numbers", are_numbers, by_type=True)
+NDARRAY = Kind("an array of real numbers", are_numbers, "np.array([0.0, 1.0])", True)  # lists become one
 NOTHING = Kind("None", lambda v: v is None, by_type=True)
 _KINDS: Mapping[Any, Kind] = {
     float: FLOAT,
@@ -136,14 +146,16 @@ def kind_of(annotation: Any) -> Kind:
     if origin is Annotated:
         return next(each for each in annotation.__metadata__ if isinstance(each, Kind))
     if annotation in _KINDS or origin in _ARRAYS:
-        return _KINDS.get(annotation, ARRAY)
+        return _KINDS.get(annotation, NDARRAY)
     if origin in (Union, UnionType):
         return _union(inside)
     if origin is Literal:
         names = ", ".join(map(repr, inside))
         return Kind(f"one of {names}", lambda v: isinstance(v, type(inside[0])) and not isinstance(v, bool), "", True)
     if origin is Callable:
-        return Kind("a function", callable, by_type=True)
+        count = len(inside[0]) if isinstance(inside[0], list) else None
+        label = "a function" if count is None else f"a function of {count} argument{'s' * (count != 1)}"
+        return Kind(label, lambda v: callable(v) and _takes(v, count), by_type=True)
     if isinstance(origin, type) and issubclass(origin, Mapping):
         return _mapping(*map(kind_of, inside))
     if isinstance(origin, type) and issubclass(origin, Iterable):
