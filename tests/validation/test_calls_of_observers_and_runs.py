@@ -80,6 +80,7 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: homography([[0, 0], [1, 0], [0, 1], [1, 1]], np.full((4, 2), 2.0)), "the same one"),
     (lambda: scale_spread(windows=[(10, 9)]), "two times from 0 to 10"),
     (lambda: misbelieved(SEEN.motion), "none is named"),
+    (lambda: po.lie_derivatives(po.PerspectiveSystem(po.affine(), po.sphere()), 4), "fewer orders"),
 )
 
 
