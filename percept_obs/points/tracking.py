@@ -82,7 +82,7 @@ def _follow_points(
             "observer for the recording's points and surface"
         )
     sight = start if isinstance(start, FirstSight) else None
-    named = {} if sight else named_start(start, form.state)
+    named = {} if isinstance(start, FirstSight) else named_start(start, form.state)
     x = np.array([named.get(name, 0.0) for name in form.names])
     if not np.isfinite(x).all():
         raise ValueError(f"the start is not finite; expected {form.states} finite numbers: {', '.join(form.names)}")
