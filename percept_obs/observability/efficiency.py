@@ -107,7 +107,7 @@ def efficiency(runs: Sequence[Run], bound: Bound) -> Efficiency:
     Raises
     ------
     ValueError
-        If there are fewer than two runs, one stands twice, or their truth is not the bound's.
+        If there are fewer than two runs, one stands twice, observers differ, or truth or outputs are not the bound's.
 
     See Also
     --------
@@ -130,4 +130,9 @@ def efficiency(runs: Sequence[Run], bound: Bound) -> Efficiency:
         own = run.recording.truth
         if own is None or truth is None or own.shape != truth.shape or not np.allclose(own, truth):
             raise ValueError(f"run {number} is on another truth than the bound; both must follow the same point")
+        if run.measured != bound.form.measured or run.observer.name != runs[0].observer.name:
+            raise ValueError(
+                f"run {number} is of the {run.observer.name} observer on {', '.join(run.measured)}; give runs of one "
+                f"observer on the bound's {', '.join(bound.form.measured)}"
+            )
     return Efficiency(bound.elapsed, np.array([run.error[:, -1] for run in runs]), bound.deviation[:, -1])

@@ -90,7 +90,7 @@ def error_gramian(recording: Recording, system: System, window: float) -> ErrorG
     1.4e-01 2.5e-05
     """
     form = matching_form(system, recording)
-    check_window(recording, window, holds_samples=True)
+    check_window(recording, window)
     assert recording.truth is not None
     along = linearisation(form, recording)(recording.truth)
     H = np.eye(len(form.coordinates))[along.measured] * along.seen[:, :, None]
@@ -138,7 +138,7 @@ def empirical_gramian(recording: Recording, system: System, window: float) -> Er
     1.5e-01
     """
     form = matching_form(system, recording)
-    check_window(recording, window, holds_samples=True)
+    check_window(recording, window)
     time = recording.time
     last = int(np.searchsorted(time, time[-1] - window + slack_of(time), side="right")) - 1
     begins = np.unique(np.linspace(0, last, MOST_WINDOWS).round().astype(int))

@@ -228,9 +228,10 @@ def lie_derivatives(system: System, orders: int | None = None, varying: bool = F
     orders = len(x) - 1 if orders is None else orders
     if orders < 0:
         raise ValueError(f"the orders are {orders}; the outputs themselves are the order 0")
-    terms = len(form.x1) * len(x) * 4.0 ** min(orders, 99)
-    limit(terms, "terms of Lie derivatives", "ask for fewer orders", MOST_TERMS)
     f = rate_of(form)
+    growth = 4.0 if all(entry.is_polynomial(*x) for entry in f) else 10.0  # from order to order, as curved surfaces do
+    terms = len(form.x1) * len(x) * growth ** min(orders, 99)
+    limit(terms, "terms of Lie derivatives", "ask for fewer orders", MOST_TERMS)
     names = [tuple(sp.Symbol(f"{s.name}^({k})", real=True) for s in p) for k in range(1, orders)] if varying else []
     chain = [p, *names]
     h, blocks = sp.ImmutableMatrix(form.x1), []

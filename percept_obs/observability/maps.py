@@ -68,7 +68,8 @@ class BoundMap:
     distance: float
 
     def __post_init__(self) -> None:
-        positive(places=numbers(self.relative, "values of relative", len(self.y2), len(self.y1)).size)
+        numbers(self.relative, "values of relative", len(self.y2), len(self.y1))
+        positive(places=self.relative.size, seconds=self.seconds, distance=self.distance)
 
     def at(self, y1: float, y2: float) -> float:
         """Relative standard deviation at the nearest place; raises ValueError outside of the map."""
@@ -149,6 +150,8 @@ def bound_map(
     if len(names) != 2:
         raise ValueError(f"the {surface.name} has {len(names)} image coordinates; a map is of two")
     positive(seconds=seconds, distance=distance, noise_variance=noise_variance)
+    if seconds < PERIOD:
+        raise ValueError(f"seconds is {seconds}; give at least {PERIOD}, the time from one sample to the next")
     for name, ends in {"y1": y1, "y2": y2}.items():
         if not (np.isfinite(ends).all() and ends[0] < ends[1]):
             raise ValueError(f"the image ends at {name} = {ends}; give two finite numbers, the smaller one first")

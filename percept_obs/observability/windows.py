@@ -106,7 +106,7 @@ def windowed(form: PartitionedSystem, recording: Recording, window: float = 10.0
     NotAffine
         If there is no canonical form, and so no w.
     ValueError
-        If the window is not positive or longer than the recording.
+        If the window is not positive, longer than the recording or shorter than the time between two samples.
 
     See Also
     --------
@@ -171,12 +171,12 @@ def _along(form: CanonicalForm, recording: Recording, expressions: Sequence[sp.E
     return np.stack(entries, axis=-1)
 
 
-def check_window(recording: Recording, window: float, holds_samples: bool = False) -> None:
-    """Raise ValueError unless a window is positive and fits into a recording, and holds two samples if it must."""
+def check_window(recording: Recording, window: float) -> None:
+    """Raise ValueError unless a window is positive and fits into a recording, and holds two samples."""
     length, shortest = recording.elapsed[-1], float(np.diff(recording.time).min())
     if not 0 < window <= length + slack_of(recording.time):
         raise ValueError(f"the window is {window} s; it must be positive and at most {length:.4g} s")
-    if holds_samples and window < shortest * (1 - 1e-9):
+    if window < shortest * (1 - 1e-9):
         raise ValueError(f"the window is {window} s, shorter than the {shortest:.4g} s between two samples; widen it")
 
 

@@ -155,7 +155,7 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
     GainTooSmall
         If alpha is 1 or more.
     ValueError
-        If the time is negative or not finite.
+        If the time or the disturbance is negative or not finite, or the observer is another one.
 
     See Also
     --------
@@ -175,9 +175,11 @@ def ultimate_bound(observer: Observer, disturbance: float, time: float = 0.0) ->
     """
     if not 0 <= time < math.inf:
         raise ValueError(f"the time is {time} s; it must be finite, from 0 on")
-    gains = observer.gain_values
+    if not 0 <= disturbance < math.inf:
+        raise ValueError(f"the disturbance is {disturbance}; it is the largest |g|, finite and from 0 on")
+    gains = _gains(observer)
     alpha = disturbance / gains[gamma]
-    if not 0 <= alpha < 1:
+    if not alpha < 1:
         raise GainTooSmall(
             f"the disturbance g reaches {disturbance:.4g}, but the switching gain gamma is {gains[gamma]:.4g}; "
             "alpha = |g| / gamma must be below 1, so take a larger switching_gain"
@@ -207,7 +209,7 @@ def tolerable_amplification(observer: Observer, noise: float, hidden: float, tim
     Raises
     ------
     ValueError
-        If a number is not positive.
+        If a number is not positive, or the observer is another one.
 
     See Also
     --------
@@ -223,8 +225,15 @@ def tolerable_amplification(observer: Observer, noise: float, hidden: float, tim
     """
     if not (noise > 0 and hidden > 0 and 0 <= time < math.inf):
         raise ValueError("noise and hidden must be positive and the time finite, from 0 on")
-    gains = observer.gain_values
+    gains = _gains(observer)
     return hidden / (10 * noise * (gains[k1] + 2 * gains[gamma] * (gains[a] + gains[b] * time)))
+
+
+def _gains(observer: Observer) -> dict[sp.Symbol, float]:
+    """Gains of an integral sliding mode observer; raise ValueError for another one."""
+    if missing := {gain.name for gain in GAINS} - {gain.name for gain in observer.gains}:
+        raise ValueError(f"the {observer.name} observer has no {', '.join(sorted(missing))}; give one of ismo()")
+    return observer.gain_values
 
 
 def _pseudo_input(estimated_rate: sp.Expr, se: sp.Expr, s: sp.Expr, sgn: Switch) -> sp.Expr:

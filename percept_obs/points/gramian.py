@@ -253,7 +253,7 @@ def decay_bound(recording: Recording, observer: LuenbergerObserver, window: floa
         raise ValueError(f"the recording shows the {recording.view.name}, but the observer is of {form.name}")
     if recording.truth is None:
         raise ValueError("the recording has no truth, so that the true images are not known")
-    check_window(recording, window, holds_samples=True)
+    check_window(recording, window)
     time, images, slack = recording.time, _true_images(recording), slack_of(recording.time)
     # (15) is tested at as many instants as a window has intervals
     every = slice(None, None, max(1, len(time) // PARTS))
@@ -300,7 +300,7 @@ def _true_images(recording: Recording) -> Array:
 
 def _windows(recording: Recording, window: float, form: PointsForm, information: Callable[[Indices], Array]) -> Gramian:
     """Integrals over all windows that begin at a sample."""
-    check_window(recording, window, holds_samples=True)
+    check_window(recording, window)
     used = np.arange(0, len(recording.time), max(1, int(len(recording.time) * form.states**2 / LARGEST_TABLE)))
     time = recording.time[used]
     begins, matrices = window_integrals(time, information(used), transitions(form, time)[:, :-1, :-1], window)

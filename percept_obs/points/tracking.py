@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,9 +15,9 @@ from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.points.run import PointsRun
 from percept_obs.system.motion import Motion
-from percept_obs.tracking.following import DoesNotFit, follow, require_definite
+from percept_obs.tracking.following import DoesNotFit, Start, follow, named_start, require_definite
 from percept_obs.tracking.grid import TimeGrid
-from percept_obs.validation import checked, numbers, positive
+from percept_obs.validation import checked, positive
 
 KEPT = 100
 """Approximate number of samples at which P is kept for its conditions."""
@@ -70,7 +69,7 @@ class FirstSight:
 def _follow_points(
     observer: LuenbergerObserver,
     grid: TimeGrid,
-    start: FirstSight | Sequence[float] | None,
+    start: FirstSight | Start,
     believed: Motion | None,
     language: Language | None,
 ) -> PointsRun:
@@ -83,11 +82,10 @@ def _follow_points(
             "observer for the recording's points and surface"
         )
     sight = start if isinstance(start, FirstSight) else None
-    x = np.zeros(form.states) if start is None or sight else numbers(start, "the start")
-    if x.shape != (form.states,) or not np.isfinite(x).all():
-        raise ValueError(
-            f"the start has shape {x.shape}; expected {form.states} finite numbers: {', '.join(form.names)}"
-        )
+    named = {} if isinstance(start, FirstSight) else named_start(start, form.state)
+    x = np.array([named.get(name, 0.0) for name in form.names])
+    if not np.isfinite(x).all():
+        raise ValueError(f"the start is not finite; expected {form.states} finite numbers: {', '.join(form.names)}")
     began = np.zeros_like(recording.seen)
     for sighting in recording.sightings(sight.absence) if sight else ():
         began[sighting.first, sighting.point] = True

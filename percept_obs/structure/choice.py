@@ -99,6 +99,8 @@ class StructureAndMotion(OnePoint):
         """Contradiction of statements, or reason why the unknowns cannot be told apart; empty if there is none."""
         if both := [name for name in self.unknown if name in (*self.zero, *self.earlier)]:
             return f"{', '.join(both)} cannot be unknown and known at once; take it out of one of the lists"
+        if both := [name for name in self.earlier if name in self.zero]:
+            return f"{', '.join(both)} cannot be zero and estimated earlier at once; take it out of one of the lists"
         if d_s.name in self.zero:
             return "d_s is one over a distance, so it is not zero; zero names velocity components"
         if self.scale is not None and d_s.name in self.unknown:

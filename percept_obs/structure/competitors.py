@@ -119,6 +119,11 @@ def scale_spread(
     """
     pd = load_pandas()
     setup = chwa2019_experiment("IV.A")
+    if not len(decibels) or not len(windows):
+        raise ValueError(f"{len(decibels)} decibels and {len(windows)} windows: at least one of each is needed")
+    for begin, end in windows:
+        if not 0 <= begin < end <= setup.duration:
+            raise ValueError(f"a window is {begin} to {end} s; give two times from 0 to {setup.duration} s")
     rows = []
     for ratio in decibels:
         camera = ScaledDepthCamera(pixels=CHWA_CAMERA, ratio=SignalToNoise(ratio), depth=depth)

@@ -107,6 +107,8 @@ def homography(reference: ArrayLike, images: ArrayLike) -> Array:
         raise ValueError("image points are not finite; leave out the pictures in which one was lost")
     if np.linalg.matrix_rank(reference - reference.mean(axis=0), tol=1e-9) < 2:
         raise ValueError("the points lie on a line in the reference picture; take points that span the patch")
+    if not np.ptp(images, axis=-2).max(axis=-1).min(initial=np.inf) > 0:
+        raise ValueError("all points of a picture are the same one; leave that picture out")
     unit_from_reference, unit_from_images = _unit_from_points(reference), _unit_from_points(images)
     p = np.insert(images, 2, 1.0, axis=-1) @ np.swapaxes(unit_from_images, -1, -2)
     m = np.broadcast_to(np.insert(reference, 2, 1.0, axis=-1) @ unit_from_reference.T, p.shape)

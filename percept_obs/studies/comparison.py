@@ -24,7 +24,7 @@ from percept_obs.system.view import refuse_several
 from percept_obs.tracking.following import AnyObserver, StepTooLong, track
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import bar, checked, load_pandas, numbers
+from percept_obs.validation import bar, checked, load_pandas, numbers, once
 
 __all__ = ["Comparison", "compare", "over_bound", "relative_distance_errors"]
 
@@ -264,7 +264,7 @@ def compare(
     Raises
     ------
     ValueError
-        If recordings or observers are none or do not fit, one has no truth or several points, or a column is
+        If recordings or observers are none, recur or do not fit, one has no truth or several points, or a column is
         taken or gives no number.
 
     See Also
@@ -286,6 +286,7 @@ def compare(
         observers = dict(zip(names, observers, strict=True))
     if not len(recordings) or not observers:
         raise ValueError(f"{len(recordings)} recordings and {len(observers)} observers: at least one of each is needed")
+    once(recordings=recordings)
     for recording in recordings:
         refuse_several("a comparison", recording.view)
     if clash := {*(columns or {})} & {*ABOUT, "outcome", "settling_time", "final", "rms", "worst", "cost"}:

@@ -213,7 +213,8 @@ def _moved(motion: Motion, entries: Sequence[str] | None) -> tuple[sp.Symbol, ..
     names = [*there] if entries is None else list(entries)
     unknown = [name for name in names if name not in there]
     if unknown or not names:
-        raise ValueError(f"the {motion.name} motion has no entry {', '.join(unknown)}; it has {', '.join(there)}")
+        said = ", ".join(unknown) or "to err, for none is named"
+        raise ValueError(f"the {motion.name} motion has no entry {said}; it has {', '.join(there)}")
     return tuple(there[name] for name in names)
 
 

@@ -16,7 +16,7 @@ from percept_obs.recording import Recording
 from percept_obs.studies.comparison import Follow, relative_distance_errors
 from percept_obs.tracking.following import AnyObserver, StepTooLong
 from percept_obs.tracking.run import Run
-from percept_obs.validation import bar, checked
+from percept_obs.validation import bar, checked, once, refuse_kind
 
 __all__ = ["Tuned", "best_setting", "tune_by_likelihood"]
 
@@ -61,7 +61,7 @@ def best_setting(
     Raises
     ------
     ValueError
-        If there are no recordings, observers or times, no recording lasts as long, or another observer is run.
+        If recordings, observers or times are none or recur, no recording lasts as long, or another observer is run.
 
     See Also
     --------
@@ -76,6 +76,7 @@ def best_setting(
     >>> best_setting(seen, settings, lambda recording, observer: track(recording, observer)) is settings[1]
     True
     """
+    once(recordings=recordings)
     candidates = list(observers)
     if not (len(recordings) and candidates and len(after)):
         raise ValueError(
@@ -96,6 +97,8 @@ def best_setting(
 def _followed(recordings: Sequence[Recording], observer: AnyObserver, follow: Follow) -> list[Run]:
     """Runs of an observer; raise ValueError if they are of another one."""
     runs = [follow(recording, observer) for recording in recordings]
+    for run in runs:
+        refuse_kind("follow", "its result", run, Run)
     chosen = {gain.name: gain.value for gain in getattr(observer, "gains", ()) if gain.given}
     if chosen and any(chosen.items() - {(gain.name, gain.value) for gain in run.observer.gains} for run in runs):
         raise ValueError("follow runs another observer than it is given; make it track(recording, observer)")
@@ -168,7 +171,7 @@ def tune_by_likelihood(
     Raises
     ------
     ValueError
-        If there are no recordings or gains, a range is not positive, follow runs another observer, or all diverge.
+        If recordings or gains are none or recur, a range is not positive, follow runs another observer, or all diverge.
 
     See Also
     --------
@@ -189,6 +192,7 @@ def tune_by_likelihood(
     """
     from scipy.optimize import minimize
 
+    once(recordings=recordings)
     if not len(recordings) or not ranges:
         raise ValueError(f"{len(recordings)} recordings and {len(ranges)} gains: at least one of each is needed")
     for name, ends in ranges.items():

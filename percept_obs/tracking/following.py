@@ -378,9 +378,11 @@ def named_start(start: Start, coordinates: Symbols) -> dict[str, float]:
     if start is None:
         return {}
     refuse_kind("track", "start", start, Start)
-    if isinstance(start, Mapping):
-        return {name: float(value) for name, value in start.items()}
     names = [symbol.name for symbol in coordinates]
+    if isinstance(start, Mapping):
+        if unknown := sorted(set(start) - set(names)):
+            raise ValueError(f"the start has no coordinate {', '.join(unknown)}; give estimates of {', '.join(names)}")
+        return {name: float(value) for name, value in start.items()}
     if len(start) != len(names):
         raise ValueError(f"the start has {len(start)} values; expected {len(names)}: {', '.join(names)}")
     return dict(zip(names, map(float, start), strict=True))

@@ -119,8 +119,6 @@ def _follow_by_function(
         raise DoesNotFit(f"the first sample was lost, but the {observer.name} observer starts from it; use between()")
     wanted = dict.fromkeys(names, 0.0) | dict(zip(form.measured, samples[0].tolist(), strict=True))
     given, scale = named_start(start, form.coordinates), dict(zip(names, recording.scale.tolist(), strict=True))
-    if unknown := sorted(set(given) - set(names)):
-        raise ValueError(f"the start has no coordinate {', '.join(unknown)}; give estimates of {', '.join(names)}")
     wanted |= {name: value * scale[name] for name, value in given.items()}
     rows = known_signals(believed, recording.view, recording.time[:-1] + recording.intervals / 2, recording.unit)
     rows = np.broadcast_to(rows, (len(recording.time) - 1, rows.shape[1]))

@@ -13,6 +13,7 @@ import numpy as np
 
 from percept_obs.compile import Array, Flags, Indices, vectorised
 from percept_obs.recording import Recording
+from percept_obs.recording.plausibility import judge_tolerance
 from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.system.view import View
 from percept_obs.tracking.grid import Hold
@@ -302,8 +303,7 @@ class Run:
         >>> track(record(scenarios.ma2005_eq35(), 5), ibo(form)).trust().kind
         'agrees'
         """
-        if not 0 < tolerance < math.inf:
-            raise ValueError(f"the tolerance is {tolerance}; it must be a positive number, such as 0.1 for 10 %")
+        judge_tolerance(tolerance)
         known, last, view = self.recording.motion.known(self.time[-1:]), self.estimate[-1], self.view
         said = partial(Trust, judged=view.judged, length=float(self.elapsed[-1]))
         if not np.isfinite(last).all():
@@ -374,6 +374,7 @@ class Run:
         ValueError
             If there is no truth, or the tolerance or a name makes no sense.
         """
+        judge_tolerance(tolerance, not names)
         error = np.abs(self.error[:, self._columns(names)]).max(axis=1) if names else self.relative_error
         known = self._known
         if not known.any():

@@ -175,8 +175,6 @@ def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Ou
 
     The error is infinite behind the camera and NaN without an estimate.
     """
-    if not tolerance > 0:
-        raise ValueError(f"the tolerance is {tolerance}; it must be positive")
     final = float(error[-1])
     outside = np.flatnonzero(~(error < tolerance))
     if len(outside) and outside[-1] == len(error) - 1:

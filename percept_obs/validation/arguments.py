@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percept_obs.validation.environment import load_pandas
-from percept_obs.validation.kinds import FLOAT, Kind, are_numbers, is_real, kind_of, with_article
+from percept_obs.validation.kinds import FLOAT, NDARRAY, Kind, are_numbers, is_real, kind_of, with_article
 from percept_obs.validation.travel import travels
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
@@ -99,6 +99,8 @@ def _guarded(function: Any, name: str, annotated: Any) -> Any:
         for key in kinds.keys() & bound.arguments.keys():
             if _is_meant_as_float(bound.arguments[key], kinds[key]):
                 bound.arguments[key] = float(bound.arguments[key])
+            elif isinstance(bound.arguments[key], list | tuple) and NDARRAY in (kinds[key], *kinds[key].alternatives):
+                bound.arguments[key] = np.asarray(bound.arguments[key])
         if all(isinstance(each, str) or _decides(each, by_type) for each in types):
             passed.add(types)
         return function(*bound.args, **bound.kwargs)

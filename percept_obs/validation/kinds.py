@@ -127,6 +127,7 @@ Coefficients = Annotated[
 
 FLOAT = Kind("a real number", lambda v: is_real(v) and v == v, by_type=True)
 ARRAY = Kind("an array of real numbers", are_numbers, by_type=True)
+NDARRAY = Kind("an array of real numbers", are_numbers, "np.array([0.0, 1.0])", True)  # lists become one
 NOTHING = Kind("None", lambda v: v is None, by_type=True)
 _KINDS: Mapping[Any, Kind] = {
     float: FLOAT,
@@ -148,7 +149,7 @@ def kind_of(annotation: Any) -> Kind:
     if origin is Annotated:
         return next(each for each in annotation.__metadata__ if isinstance(each, Kind))
     if annotation in _KINDS or origin in _ARRAYS:
-        return _KINDS.get(annotation, ARRAY)
+        return _KINDS.get(annotation, NDARRAY)
     if origin in (Union, UnionType):
         return _union(inside)
     if origin is Literal:

@@ -271,7 +271,7 @@ def test_seeds_repeat(seed):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"start": [0.0]}, r"start has shape \(1,\); expected 6 finite numbers: X1_x"),
+        ({"start": [0.0]}, "start has 1 values; expected 6: X1_x"),
         ({"start": [np.nan] * 6}, "6 finite numbers"),
         ({"step": np.inf}, "positive and finite"),
         ({"hold": "second"}, "none of 'zero', 'first' and 'exact'"),

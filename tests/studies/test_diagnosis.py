@@ -274,8 +274,8 @@ def test_single_wild_samples_are_left_out_and_a_smooth_track_has_none():
 
 def test_pixels_are_told_by_their_size():
     with pytest.warns(Unlikely):
-        pixels = [replace(recording, outputs=600 * recording.outputs + 300) for recording in BLIND]
-    found = diagnose(pixels * 20)
+        pixels = [replace(recording, outputs=600 * recording.outputs + 300) for recording in BLIND * 20]
+    found = diagnose(pixels)
     assert found.named == "pixels"
     assert "pixels" in repr(found)
     assert "12 of 40 recordings were looked at" in found.sentence

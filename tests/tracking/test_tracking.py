@@ -229,7 +229,7 @@ def test_the_claimed_covariance():
         (ibo(ONE), {"step": 0.0}, ValueError, "must be positive"),
         (ibo(ONE), {"start": (0, 0)}, ValueError, "expected 3: y1, y2, y3"),
         (ibo(ONE), {"start": (0, 0, np.nan)}, ValueError, "no finite value for y3"),
-        (ibo(ONE), {"start": {"z": 1}}, ValueError, "no finite value for z"),
+        (ibo(ONE), {"start": {"z": 1}}, ValueError, "no coordinate z"),
     ],
 )
 def test_what_does_not_fit_is_refused(observer, arguments, error, message):

@@ -3,19 +3,24 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 import sympy as sp
 from examples import BOTH
 from refusals import refuses
 
 import percept_obs as po
 from percept_obs import Camera, ekf, figures, ibo, pinhole, track
-from percept_obs.observers import gains, parts
+from percept_obs.observers import gains, ismo, parts
+from percept_obs.observers.integral_sliding_mode import ultimate_bound
 from percept_obs.points import constant, scenarios, scheduled
+from percept_obs.recording import plausibility
 from percept_obs.structure import seen_as
+from percept_obs.structure.competitors import scale_spread
+from percept_obs.structure.pixels import homography
 from percept_obs.structure.scenarios import chwa2019_experiment, chwa2019_simulation
 from percept_obs.studies import comparison, fields, servoing, tuning
 from percept_obs.studies.all_observers import all_observers
-from percept_obs.studies.sensitivity import sensitivity
+from percept_obs.studies.sensitivity import misbelieved, sensitivity
 from percept_obs.tracking import smoothing, transition
 
 SEEN = po.record(po.scenarios.ma2005_eq35(), 1, Camera(0.1, po.Gaussian(0.01)))
@@ -87,4 +92,27 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: servoing.starts(10**9), "take fewer"),
     (lambda: scheduled(lambda t: 1 + t, times=[0, 1]), "give one of the two"),
     (lambda: chwa2019_simulation("V.A", (0.1, 0.2)), r"expected \(\.\.\., 3\)"),
+    (lambda: ultimate_bound(ibo(BOTH), 0.5), "has no feedback"),
+    (lambda: ultimate_bound(ismo(BOTH), -5.0), r"is -5.0; it is the largest \|g\|"),
+    (lambda: track(TWO, po.luenberger(TWO.view), {"r_x": 1, "foo": 2}), "no coordinate foo; give estimates of r_x"),
+    (lambda: tuning.best_setting([SEEN], [ibo(BOTH)], lambda r: RUN), "expected a function of 2 arguments"),
+    (lambda: tuning.best_setting([SEEN], [ibo(BOTH)], lambda r, o: o), "its result is an Observer"),
+    (lambda: comparison.compare([SEEN, SEEN], [ibo(BOTH)]), "twice; give each once"),
+    (lambda: RUN.outcome(np.inf), "must be positive and finite"),
+    (lambda: po.efficiency([RUN, track(SEEN, ibo(BOTH))], po.cramer_rao(SEEN, BOTH)), "run 2 is of the identifier-b"),
+    (lambda: po.windowed(BOTH, SEEN, 0.01), "shorter than the 0.1 s between two samples"),
+    (lambda: po.bound_map(MAP.system, 0.01), "give at least 0.05"),
+    (lambda: replace(MAP, distance=-5.0), "distance is -5.0"),
+    (lambda: po.StructureAndMotion(("v_p1",), ("v_c1",), ("v_c1",), 4.0), "cannot be zero and estimated earlier"),
+    (lambda: chwa2019_simulation("IV.A", (0, 1)), r"expected \(\.\.\., 3\)"),
+    (lambda: homography([[0, 0], [1, 0], [0, 1], [1, 1]], np.full((4, 2), 2.0)), "the same one"),
+    (lambda: scale_spread(windows=[(10, 9)]), "two times from 0 to 10"),
+    (lambda: misbelieved(SEEN.motion), "none is named"),
+    (lambda: po.lie_derivatives(po.PerspectiveSystem(po.affine(), po.sphere()), 4), "fewer orders"),
 )
+
+
+def test_lists_are_arrays_and_per_cent_are_doubted():
+    assert replace(MAP, y1=[-1, 0, 1], relative=[[0, 1, 2]] * 3).at(0, 0) == 1
+    with pytest.warns(plausibility.Unlikely, match="the tolerance is 10, more than"):
+        RUN.settling_time(10)

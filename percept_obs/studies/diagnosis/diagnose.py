@@ -14,7 +14,7 @@ from percept_obs.studies.diagnosis.causes import CAUSES, FOCAL, LARGEST_OFFSET, 
 from percept_obs.studies.diagnosis.fitting import Estimate
 from percept_obs.studies.diagnosis.search import LIMITS, Found, search
 from percept_obs.studies.diagnosis.tracks import track_of
-from percept_obs.validation import checked
+from percept_obs.validation import checked, once
 
 MOST = 12
 """Recordings that are looked at; of more of them, so many are taken, evenly spread."""
@@ -197,6 +197,7 @@ def diagnose(recordings: Recording | Sequence[Recording]) -> Diagnosis:
     given = [recordings] if isinstance(recordings, Recording) else list(recordings)
     if not given:
         raise ValueError("there is no recording; give one, or several of points that one camera saw")
+    once(recordings=given)
     if len({each.motion.parameters for each in given}) > 1:
         raise ValueError("the recordings are of several kinds of motion; give points that one camera saw")
     several = [given[k] for k in np.unique(np.linspace(0, len(given) - 1, min(MOST, len(given))).round().astype(int))]
