@@ -64,6 +64,11 @@ class Film(Footage):
     sighting : Sighting
         Pixels of all corners.
 
+    Raises
+    ------
+    ValueError
+        If an entry of `recordings` is no recording, or one that is asked for is none of them.
+
     See Also
     --------
     read_film : Reads it.

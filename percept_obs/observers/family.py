@@ -35,6 +35,11 @@ class Option:
     choices : tuple of str
         Names that it may be; empty if it is anything of the default's kind.
 
+    Raises
+    ------
+    ValueError
+        If the default is none of the choices.
+
     See Also
     --------
     percept_obs.observers.Family : Holds options.

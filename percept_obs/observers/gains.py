@@ -99,6 +99,11 @@ def grid(**values: Sequence[float]) -> tuple[dict[str, float], ...]:
     **values : sequence of float
         Values to try, by the names of gains.
 
+    Raises
+    ------
+    ValueError
+        If a gain has no values.
+
     See Also
     --------
     percept_obs.studies.all_observers.all_observers : Tries them.

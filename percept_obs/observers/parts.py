@@ -148,6 +148,11 @@ def kept_within(state: Symbols, estimate: Symbols) -> tuple[Boolean, Expressions
     estimate : symbols
         Those of the state whose norm is bounded.
 
+    Raises
+    ------
+    ValueError
+        If there is no estimate, or it is none of the state.
+
     See Also
     --------
     identifier_based : Uses it.

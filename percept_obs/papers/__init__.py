@@ -122,6 +122,11 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
     bool
         True if every verdict is the recorded one.
 
+    Raises
+    ------
+    ValueError
+        If there is no entry to judge, or `processes` is not positive.
+
     See Also
     --------
     find : Chooses ledgers.

@@ -106,6 +106,11 @@ def scale_spread(
         One row for an observer, a ratio and a window: observer, decibels, begin, end, mean and std of the estimates of
         d_s in 1/m where there are any, missing (share of samples in a gap), true.
 
+    Raises
+    ------
+    ValueError
+        If there is no ratio or no window, or a window ends before it begins.
+
     See Also
     --------
     competitors : The observers.

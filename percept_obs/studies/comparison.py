@@ -73,6 +73,11 @@ class Comparison:
     notes : tuple of str
         Sentences on what was sampled, and on what stands for a truth where there is none.
 
+    Raises
+    ------
+    ValueError
+        If the table lacks one of its columns.
+
     See Also
     --------
     compare, percept_obs.studies.all_observers.all_observers : Make it.

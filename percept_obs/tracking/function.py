@@ -175,6 +175,11 @@ def transition(form: PartitionedSystem) -> Callable[[Array, float, Mapping[str, 
     ----------
     form : PartitionedSystem
 
+    Raises
+    ------
+    ValueError
+        By the function, if a parameter of the form is not known.
+
     See Also
     --------
     FunctionObserver : Has such a step.
