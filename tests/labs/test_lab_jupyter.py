@@ -96,8 +96,8 @@ def test_python_may_be_busy_set_the_settings_and_say_what_is_wrong(browser_page,
     for seed in range(1, 4):  # while the kernel sleeps
         page.fill(control("seed number"), str(seed))
         page.wait_for_function(f"{FIRST}.shown.settings.seed === {seed}")
-    page.wait_for_function(f"{FIRST}.shown?.settings.outputs[0] === 'y2'", timeout=120_000)
-    rested(page)  # a picture is drawn before all that is said of it is computed
+    # a picture is drawn before all that is said of it is computed
+    page.wait_for_function(f"{FIRST}.shown?.settings.outputs[0] === 'y2' && {FIRST}.shown.whole", timeout=120_000)
     assert_equals_python(state(page))
     page.fill(control("seed number"), "5")
     page.wait_for_selector(".percept-obs-error:not([hidden])")
