@@ -16,9 +16,8 @@ from percept_obs.observability.matching import System, matching_form
 from percept_obs.observers import extended_kalman
 from percept_obs.recording import Recording
 from percept_obs.system.forms import PartitionedSystem
-from percept_obs.tracking.following import require_definite
 from percept_obs.tracking.linearised import Doubt, Linearised, linearisation, names_of, positions
-from percept_obs.validation import checked, numbers, positive
+from percept_obs.validation import checked, numbers, positive, require_definite
 
 Prior = Mapping[str, float] | ArrayLike | None
 

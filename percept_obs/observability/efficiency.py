@@ -11,7 +11,7 @@ import numpy as np
 from percept_obs.compile import Array, Flags
 from percept_obs.observability.bound import Bound
 from percept_obs.tracking.run import Run
-from percept_obs.validation import checked, numbers, positive
+from percept_obs.validation import checked, numbers, once, positive
 
 
 @checked
@@ -124,8 +124,9 @@ def efficiency(runs: Sequence[Run], bound: Bound) -> Efficiency:
     True
     """
     truth = bound.recording.truth
-    if len(runs) < 2 or len(set(runs)) < len(runs):
-        raise ValueError(f"{len(runs)} runs tell no mean square; give two or more, each once, with noise of their own")
+    once(runs=runs)
+    if len(runs) < 2:
+        raise ValueError(f"{len(runs)} runs tell no mean square; give two or more, with noise of their own")
     for number, run in enumerate(runs, 1):
         own = run.recording.truth
         if own is None or truth is None or own.shape != truth.shape or not np.allclose(own, truth):

@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags
 from percept_obs.system.signal import Signal
-from percept_obs.tracking.following import require_definite
-from percept_obs.validation import checked, numbers, positive
+from percept_obs.validation import checked, numbers, positive, require_definite
 
 DIFFERENCE = 1e-5
 """Half of the time, in seconds, over which a scheduled P is differenced."""

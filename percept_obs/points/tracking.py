@@ -15,9 +15,9 @@ from percept_obs.points.luenberger import LuenbergerObserver
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.points.run import PointsRun
 from percept_obs.system.motion import Motion
-from percept_obs.tracking.following import DoesNotFit, Start, follow, named_start, require_definite
+from percept_obs.tracking.following import DoesNotFit, Start, follow, named_start
 from percept_obs.tracking.grid import TimeGrid
-from percept_obs.validation import checked, positive
+from percept_obs.validation import checked, positive, require_definite
 
 KEPT = 100
 """Approximate number of samples at which P is kept for its conditions."""

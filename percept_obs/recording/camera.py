@@ -264,7 +264,7 @@ class Scene(ABC):
             )
         if not (np.isfinite(self.duration) and self.duration > 0):
             raise ValueError(f"the duration is {self.duration} s; it must be positive")
-        self.known_motion.known(0.0)
+        self.known_motion.known(0.0)  # refuses a motion without numbers
         return tuple(array.tolist())
 
 

@@ -1,4 +1,4 @@
-"""Warn about implausible recordings: pixels for image coordinates, a gap in the motion; and per cent."""
+"""Warn about implausible recordings: pixels for image coordinates, a gap in the motion, times in other units."""
 
 from __future__ import annotations
 
@@ -57,11 +57,3 @@ def warn_if_implausible(time: Array, outputs: Array, names: tuple[str, ...], vie
                 "recording with between(), or fill the gap"
             )
         )
-
-
-def judge_tolerance(tolerance: float, relative: bool = True) -> None:
-    """Refuse a tolerance that is not positive and finite, and warn of a relative one that looks like per cent."""
-    if not 0 < tolerance < np.inf:
-        raise ValueError(f"the tolerance is {tolerance}; it must be positive and finite, such as 0.1 for 10 %")
-    if relative and tolerance > 1:
-        warn(Unlikely(f"the tolerance is {tolerance:g}, more than the distance itself; 10 % are 0.1: were they meant?"))

@@ -25,7 +25,7 @@ from percept_obs.system.view import refuse_several
 from percept_obs.tracking.grid import Hold, TimeGrid, known_signals, time_grid
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.smoothing import Belief, doubts_of, once_observable
-from percept_obs.validation import Kind, checked, limit, numbers, positive, refuse_kind, warn
+from percept_obs.validation import Kind, checked, limit, numbers, positive, refuse_kind, require_definite, warn
 
 Start = Mapping[str, float] | Sequence[float] | None
 
@@ -361,16 +361,6 @@ def require_match(form: PartitionedSystem, recording: Recording, motion: Motion)
             f"the system was derived for a motion with {', '.join(map(str, form.parameters)) or 'numbers only'}, the "
             f"given one has {', '.join(map(str, expected)) or 'numbers only'}; use the same kind of motion for both"
         )
-
-
-def require_definite(what: str, matrices: Array, semi: bool = False) -> None:
-    """Raise ValueError unless matrices are finite, symmetric and positive (semi-)definite."""
-    largest = np.abs(matrices).max(initial=1e-300)
-    if not np.isfinite(matrices).all() or np.abs(matrices - matrices.swapaxes(-1, -2)).max() > 1e-6 * largest:
-        raise ValueError(f"{what} must be a finite symmetric matrix")
-    least = float(np.linalg.eigvalsh(matrices).min())
-    if least < -1e-9 * largest or (least <= 0 and not semi):
-        raise ValueError(f"{what} has the eigenvalue {least:.3g}; it must be positive {'semi' if semi else ''}definite")
 
 
 def named_start(start: Start, coordinates: Symbols) -> dict[str, float]:

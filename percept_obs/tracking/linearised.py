@@ -110,7 +110,7 @@ def _expressions(form: PartitionedSystem, doubts: tuple[str, ...]) -> tuple[sp.E
         raise ValueError(f"there is no {', '.join(unknown)} to doubt; there are {', '.join(known)}")
 
     def moved(symbol: sp.Symbol) -> sp.Matrix:
-        """How noise moves the coordinates: by a parameter, by the rate of a coordinate, or of a state of the view."""
+        """Return what noise adds to the coordinates' rates: in a parameter, a coordinate, or a state of the view."""
         if symbol in form.parameters:
             return rate.diff(symbol)
         if view is None or symbol in x:

@@ -13,7 +13,6 @@ import numpy as np
 
 from percept_obs.compile import Array, Flags, Indices, vectorised
 from percept_obs.recording import Recording
-from percept_obs.recording.plausibility import judge_tolerance
 from percept_obs.system.surfaces import ImagingSurface
 from percept_obs.system.view import View
 from percept_obs.tracking.grid import Hold
@@ -28,8 +27,19 @@ from percept_obs.tracking.information import (
     relative_deviation,
 )
 from percept_obs.tracking.smoothing import doubts_of
-from percept_obs.tracking.verdict import BLIND, REMEDY, TOLERANCE, VERDICTS, Outcome, Trust, in_words, number, outcome
-from percept_obs.validation import checked, numbers
+from percept_obs.tracking.verdict import (
+    BLIND,
+    REMEDY,
+    TOLERANCE,
+    VERDICTS,
+    Outcome,
+    Trust,
+    in_words,
+    judge_tolerance,
+    number,
+    outcome,
+)
+from percept_obs.validation import checked, numbers, positive
 
 
 @checked
@@ -374,7 +384,10 @@ class Run:
         ValueError
             If there is no truth, or the tolerance or a name makes no sense.
         """
-        judge_tolerance(tolerance, not names)
+        if names:
+            positive(tolerance=tolerance)
+        else:
+            judge_tolerance(tolerance)
         error = np.abs(self.error[:, self._columns(names)]).max(axis=1) if names else self.relative_error
         known = self._known
         if not known.any():

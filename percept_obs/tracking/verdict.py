@@ -12,7 +12,9 @@ import numpy as np
 
 from percept_obs.compile import Array
 from percept_obs.recording.camera import TOO_SHORT
+from percept_obs.recording.plausibility import Unlikely
 from percept_obs.tracking.information import Information
+from percept_obs.validation import positive, warn
 
 REMEDY = "choose smaller gains or shorter steps"
 """Advice for a run that diverged."""
@@ -168,6 +170,13 @@ class Trust:
         if self.claimed is not None:
             said += BLIND["claimed"].format(claimed=percent(2 * self.claimed))
         return said + (BLIND["rests"] if self.kind in ("agrees", "differs", "wide") else "")
+
+
+def judge_tolerance(tolerance: float) -> None:
+    """Refuse a relative tolerance that is not positive and finite, and warn of one that looks like per cent."""
+    positive(tolerance=tolerance)
+    if tolerance > 1:
+        warn(Unlikely(f"the tolerance is {tolerance:g}, more than the distance itself; 10 % are 0.1: were they meant?"))
 
 
 def outcome(elapsed: Array, error: Array, tolerance: float, length: float) -> Outcome:

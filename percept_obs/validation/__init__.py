@@ -7,6 +7,7 @@ from percept_obs.validation.arguments import once as once
 from percept_obs.validation.arguments import one_of as one_of
 from percept_obs.validation.arguments import positive as positive
 from percept_obs.validation.arguments import refuse_kind as refuse_kind
+from percept_obs.validation.arguments import require_definite as require_definite
 from percept_obs.validation.arguments import set_fields as set_fields
 from percept_obs.validation.environment import bar as bar
 from percept_obs.validation.environment import load_pandas as load_pandas

@@ -227,6 +227,16 @@ def once(**values: Iterable[Any]) -> None:
             raise ValueError(f"{name} has {', '.join(map(str, twice))} twice; give each once")
 
 
+def require_definite(what: str, matrices: NDArray[np.float64], semi: bool = False) -> None:
+    """Raise ValueError unless matrices are finite, symmetric and positive (semi-)definite."""
+    largest = np.abs(matrices).max(initial=1e-300)
+    if not np.isfinite(matrices).all() or np.abs(matrices - matrices.swapaxes(-1, -2)).max() > 1e-6 * largest:
+        raise ValueError(f"{what} must be a finite symmetric matrix")
+    least = float(np.linalg.eigvalsh(matrices).min())
+    if least < -1e-9 * largest or (least <= 0 and not semi):
+        raise ValueError(f"{what} has the eigenvalue {least:.3g}; it must be positive {'semi' if semi else ''}definite")
+
+
 def positive(**values: float) -> None:
     """Refuse numbers that are not positive and finite, each by its name."""
     for name, value in values.items():

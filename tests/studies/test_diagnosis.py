@@ -258,6 +258,18 @@ def test_outliers_are_named_and_left_out():
     assert 0.01 < found.findings[0].value < 0.1
 
 
+@pytest.mark.parametrize(("beside", "named"), [(0.0, "outliers"), (5.0, "nothing")])
+def test_samples_are_no_outliers_where_the_other_points_are_restless_too(beside, named):
+    """Then the camera was jolted, between two poses, and the samples are right."""
+    jolted = []
+    for each, size in zip(BLIND, (12.0, beside), strict=True):
+        outputs, middle = each.outputs.copy(), each.time[len(each.time) // 2]
+        signs = np.where(np.arange(len(each.time)) % 2, 1, -1)[:, None]
+        outputs += np.where(np.abs(each.time - middle) < 0.1, size, 0.0)[:, None] * signs * np.sqrt(each.noise_variance)
+        jolted.append(replace(each, outputs=outputs))
+    assert diagnose(jolted).named == named
+
+
 def test_what_none_of_the_mistakes_explains_is_said():
     """Noise ten times as large as it is said to be is none of them."""
     found = diagnose(replace(BLIND[0], noise_variance=BLIND[0].noise_variance / 100))

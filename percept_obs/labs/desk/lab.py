@@ -63,7 +63,7 @@ class DerivationDesk(Lab):
             given = {"outputs": [list(names) for names in system.output_choices]}
             opening["outputs"] = given["outputs"][0]
         super().__init__("desk_lab", settings, opening, opening, given=given)
-        for key in settings.get("typed", ()) if self.schema.keys() - settings.keys() else ():  # else those read back
+        for key in settings.get("typed", ()) if self.by_hand(settings) else ():
             part, number, line = key.split(" ", 2)
             steps = sheet_of(*self.system(), self.settings["observer"], part).derivation
             there = [name for step in steps[int(number) - 1 : int(number)] for name in step.values]

@@ -89,14 +89,11 @@ class PointsLab(Lab):
         self._form = form
         self.idle = {
             **dict.fromkeys(("turning", "input", "camera_velocity"), only("state", *STATES)),
-            **{
-                "spin": only("state", "body", "origin"),
-                "depth": only("start", "rays"),
-                "error": only("start", "error"),
-            },
-            **{"P": only("weight", "typed"), "P0": only("weight", "lyapunov", "riccati"), "window": in_run()},
+            "spin": only("state", "body", "origin"),
+            **{"depth": only("start", "rays"), "error": only("start", "error")},
+            **{"P": only("weight", "typed"), "P0": only("weight", "lyapunov", "riccati")},
             **{"decrease": only("weight", "lyapunov"), "forgetting": only("weight", "riccati")},
-            "final": only("weight", "scheduled"),
+            **{"final": only("weight", "scheduled"), "window": in_run()},
             "hidden": in_run(lambda whole: max(times[0] if times else 0 for times in whole["hidden"])),
         }
         if form is None and not set(settings) - set(self.looks):

@@ -121,7 +121,7 @@ class Lab(anywidget.AnyWidget):
     blocks: Blocks = MappingProxyType({})
     """Vectors and matrices that may vary over time, by their letters."""
     idle: Mapping[str, Callable[[Settings], str]] = MappingProxyType({})
-    """Why settings do nothing with others, or empty; those are refused, unless all are given, as when read back."""
+    """Why settings do nothing with others, or empty; those are refused where they are written `by_hand`."""
     looks: Schema = Schema()
     """Schema of the view, which no run depends on: the drawer's open group, charts, the part of the time."""
     from_the_page: tuple[str, ...] = ("view", "settings", "summary")
@@ -150,7 +150,7 @@ class Lab(anywidget.AnyWidget):
         if view.get("chosen") and view["chosen"] not in running:
             raise ValueError(f"chosen is {view['chosen']!r}; choose one of the observers that run: {running}")
         sight, lasts = view.get("sight"), self._opening.get("duration")
-        if sight and self.schema.keys() - settings.keys() and not (sight[0] < lasts and sight[1] > 0):
+        if sight and self.by_hand(settings) and not (sight[0] < lasts and sight[1] > 0):
             raise ValueError(f"sight is {sight}; the run is from 0 to {lasts:g} s")
         model |= {"opening": self._opening, "standard": self.check(standard), "schema": self.schema.for_the_page()}
         model |= {"view": {"schema": self.looks.for_the_page(), "standard": self.looks.opening}}
@@ -172,12 +172,16 @@ class Lab(anywidget.AnyWidget):
                 "{settings}", f"{cls.schema.listed()}\n{cls.looks.listed()}{REFUSES}"
             )
 
+    def by_hand(self, settings: Settings) -> bool:
+        """Return True for settings that somebody wrote: what is read back, from a lab or an address, has them all."""
+        return not self.schema.keys() <= settings.keys()
+
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong."""
         whole = self.schema.read(settings, self._opening)
         self.refuse(whole)
-        for name, reason in self.idle.items() if self.schema.keys() - settings.keys() else ():
-            if name in settings and whole[name] and (why := reason(whole)):
+        for name, reason in self.idle.items():
+            if self.by_hand(settings) and name in settings and whole[name] and (why := reason(whole)):
                 raise ValueError(f"{name} is {settings[name]!r}, but {why}; change one of the two, or leave {name} out")
         if whole.get("kept") is not None:
             whole["kept"] = self.check({**whole["kept"], "kept": None})

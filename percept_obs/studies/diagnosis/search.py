@@ -357,20 +357,15 @@ def _largest_run(gain: Array) -> Flags:
 
 def _outliers(best: Fit, noise: float | None) -> tuple[int, int]:
     """Number of samples that are far off while the other tracks are not, 0 if they are few, and of all samples."""
-    usual = max(best.rms, noise or 0.0)
-    far, restless = max(LIMITS.outlying * usual, 10 * FINEST), LIMITS.restless * usual
-    pairs = zip(best.tracks, best.points, strict=True)
+    usual, pairs = max(best.rms, noise or 0.0), zip(best.tracks, best.points, strict=True)
+    far = max(LIMITS.outlying * usual, 10 * FINEST)
     left = [np.abs(track.sampled - seen(track, point, best.mix_up, best.wrong).outputs) for track, point in pairs]
     wild = 0
     for number, (track, apart) in enumerate(zip(best.tracks, left, strict=True)):
+        others = [pair for k, pair in enumerate(zip(best.tracks, left, strict=True)) if k != number]
         for time in track.time[(np.nan_to_num(apart) > far).any(axis=1)]:
-            rest = [
-                each[np.abs(other.time - time) <= LIMITS.around].ravel()
-                for k, (other, each) in enumerate(zip(best.tracks, left, strict=True))
-                if k != number
-            ]
-            beside = np.concatenate([np.empty(0), *rest])
-            beside = beside[np.isfinite(beside)]
-            wild += not (len(beside) and np.sqrt((beside**2).mean()) > restless)
+            beside = [each[np.abs(other.time - time) <= LIMITS.around] for other, each in others]
+            most = (LIMITS.restless * usual) ** 2 * sum(np.isfinite(each).sum() for each in beside)
+            wild += int(sum(np.nansum(each**2) for each in beside) <= most)
     total = sum(int(np.isfinite(track.sampled).any(axis=1).sum()) for track in best.tracks)
     return (wild if wild >= max(LIMITS.few, LIMITS.few_of_all * total) else 0), total
