@@ -175,20 +175,29 @@ LENSES = {
 """Lenses of public recordings, as they are published with them."""
 
 
+FISHEYE = PixelCamera(CAMERA.focal, CAMERA.centre, distortion=(0, 0, 0, 0), lens="equidistant")
+
+
+def through(lens, places):
+    """Diagnosis of recordings that a camera with some lens took, and that are divided as those of a pinhole."""
+    exact = on_a_path()
+    changed = exact, lambda pixels: lens.pixels(CAMERA.directions(pixels))
+    return diagnosed([*carried_past(exact, changed, places=places)])
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("lens", [*LENSES.values(), "fisheye"])
-def test_a_lens_that_bends_is_told_from_a_fisheye(lens):
-    bends = lens != "fisheye"
-    other = (
-        PixelCamera(CAMERA.focal, CAMERA.centre, distortion=lens)
-        if bends
-        else PixelCamera(CAMERA.focal, CAMERA.centre, distortion=(0, 0, 0, 0), lens="equidistant")
-    )
-    exact, places = on_a_path(), AHEAD * [3.0, 3.0, 1.0]
-    seen = carried_past(exact, (exact, lambda pixels: other.pixels(CAMERA.directions(pixels))), places=places)
-    found = diagnosed([*seen])
-    assert found.named == ("distortion ignored" if bends else "fisheye ignored"), found.sentence
-    assert found.explained == (lens != LENSES["TUM RGB-D, fr2"])  # which bends outwards and back
+@pytest.mark.parametrize("name", LENSES)
+def test_a_lens_that_bends_is_told_from_a_fisheye(name):
+    found = through(PixelCamera(CAMERA.focal, CAMERA.centre, distortion=LENSES[name]), AHEAD * [3.0, 3.0, 1.0])
+    assert found.named == "distortion ignored", found.sentence
+    assert found.explained == (name != "TUM RGB-D, fr2")  # which bends outwards and back
+
+
+@pytest.mark.slow
+def test_a_fisheye_is_named_or_both_are_where_it_sees_too_little():
+    wide, narrow = (through(FISHEYE, AHEAD * [scale, scale, 1.0]) for scale in (3.0, 1.0))
+    assert (wide.named, wide.findings[0].instead) == ("fisheye ignored", ())
+    assert {narrow.named, *narrow.findings[0].instead} == {"fisheye ignored", "distortion ignored"}
 
 
 @pytest.mark.night
