@@ -14,7 +14,7 @@ from percept_obs.compile import Array
 from percept_obs.recording.camera import TOO_SHORT
 from percept_obs.recording.plausibility import Unlikely
 from percept_obs.tracking.information import Information
-from percept_obs.validation import positive, warn
+from percept_obs.validation import warn
 
 REMEDY = "choose smaller gains or shorter steps"
 """Advice for a run that diverged."""
@@ -174,7 +174,8 @@ class Trust:
 
 def judge_tolerance(tolerance: float) -> None:
     """Refuse a relative tolerance that is not positive and finite, and warn of one that looks like per cent."""
-    positive(tolerance=tolerance)
+    if not 0 < tolerance < math.inf:
+        raise ValueError(f"the tolerance is {tolerance}; it must be positive and finite, such as 0.1 for 10 %")
     if tolerance > 1:
         warn(Unlikely(f"the tolerance is {tolerance:g}, more than the distance itself; 10 % are 0.1: were they meant?"))
 
