@@ -12,6 +12,7 @@ from collections import Counter
 from functools import cache, partial
 
 import browsers
+import costs
 import hypothesis
 import platformdirs
 import pytest
@@ -32,6 +33,12 @@ hypothesis.settings.register_profile("ci", deadline=None, max_examples=EXAMPLES,
 hypothesis.settings.load_profile("ci" if os.environ.get("CI") == "true" else "here")
 
 
+def pytest_configure(config):
+    """Count what tests cost, in the processes that run them."""
+    if counting := costs.plugin():
+        config.pluginmanager.register(counting)
+
+
 def pytest_itemcollected(item):
     """A test of a page that waited too long is tried once more, and what takes the night is left to it.
 
@@ -43,8 +50,18 @@ def pytest_itemcollected(item):
         item.add_marker(pytest.mark.skip(reason="takes the night: run it with ALL_SAMPLES=1"))
 
 
-APART = ("tests/notebooks/test_notebooks.py::test_it_runs_with_what_it_asks_for",)
-"""Beginnings of the names of tests that take long and share nothing: each goes to whichever process is free."""
+APART = (
+    "test_it_runs_with_what_it_asks_for_and_every_control_moves",
+    "test_the_whole_site_is_made",
+    "test_a_page_opens_without_an_error_or_a_request_and_fits_every_window",
+)
+"""Tests that take long and share nothing: each of their cases goes to whichever process is free, in this order."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers(config):
+    """Two processes more than processors, for tests of pages wait for their browser."""
+    return (os.cpu_count() or 1) + 2
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -54,7 +71,8 @@ def pytest_xdist_make_scheduler(config, log):
 
     class Rooms(LoadFileScheduling):
         def _split_scope(self, nodeid):
-            return nodeid if nodeid.startswith(APART) else super()._split_scope(nodeid)
+            name = nodeid.partition("::")[2].partition("[")[0]
+            return nodeid if name in APART else super()._split_scope(nodeid)
 
     return Rooms(config, log)
 
@@ -70,13 +88,21 @@ def pytest_sessionfinish():
 
 
 def pytest_collection_modifyitems(items):
-    """Let files come first that take long: the notebooks, the site, which waits for them, browsers, many slow tests."""
+    """Let come first what others wait for, the notebooks and the site, then files that take long; the site's own last.
+
+    By then the site is there, and its pages, which share nothing, fill what time the other processes have left.
+    """
     tests = Counter(item.path for item in items)
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     IN_BROWSER.update(item.path for item in items if item.get_closest_marker("browser"))
-    first = {"test_notebooks": 0, "test_site": 1}
-    rank = {path: (first.get(path.stem, 2), path not in IN_BROWSER, -slow[path], -tests[path]) for path in tests}
-    items.sort(key=lambda item: rank[item.path])
+    late = {item.path for item in items if "pages" in item.fixturenames}
+
+    def rank(item):
+        path, name = item.path, item.originalname
+        order = APART.index(name) if name in APART[:2] else 2 + (path in late)
+        return order, path not in IN_BROWSER, -slow[path], -tests[path]
+
+    items.sort(key=rank)
 
 
 def pytest_collection_finish():
@@ -102,12 +128,26 @@ def xr():
 
 
 @pytest.fixture(scope="session")
-def ran(tmp_path_factory):
+def base(tmp_path_factory):
+    """A folder that all processes of this run share."""
+    own = tmp_path_factory.getbasetemp()
+    return own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+
+
+@pytest.fixture(scope="session")
+def ran(base):
     """Takes the run of a notebook that any test began, in this process or in another one, or begins it."""
     from notebook_runs import shared_run
 
-    base = tmp_path_factory.getbasetemp()
-    return cache(partial(shared_run, base.parent if "PYTEST_XDIST_WORKER" in os.environ else base))
+    return cache(partial(shared_run, base))
+
+
+@pytest.fixture(scope="session")
+def pages(base, ran):
+    """The folder of the whole site, which one process makes from the runs of the notebooks."""
+    from whole_site import shared_site
+
+    return shared_site(base, ran)
 
 
 @pytest.fixture(scope="module")

@@ -65,7 +65,7 @@ def test_links_lead_to_notebooks(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", NAMES[::-1])  # the longer ones first
 def test_it_runs_with_what_it_asks_for_and_every_control_moves(name, ran):
     assert ran(name).fault == ""
     assert silent_pictures(ran(name).notebook, ran(name).widgets) == []

@@ -3,7 +3,6 @@
 import json
 import re
 import subprocess
-import warnings
 from functools import cache
 from html import unescape
 from html.parser import HTMLParser
@@ -19,7 +18,8 @@ from lab_alone import DRAWN
 from lab_settings import FRONT
 from needs import missing
 from places import NOTEBOOKS, SUPPORT
-from widths import WIDTHS, assert_fits
+from whole_site import ADDRESS, NOTEBOOK, of_each_kind, written
+from widths import assert_fits
 
 import percept_obs
 from percept_obs import PerspectiveSystem, affine, cli, ibo, pinhole, site
@@ -35,8 +35,8 @@ from percept_obs.site.notebooks import NOT_RUN, drawing, not_run
 from percept_obs.site.pages import ledger_addresses, reference
 from percept_obs.site.slides import NEXT, slides_of
 
-NOTEBOOK = "00_start.ipynb"
-ADDRESS = "https://example.org/course"
+PARTS = 12
+"""Tests that share the pages of each kind."""
 
 
 class Links(HTMLParser):
@@ -53,65 +53,9 @@ class Links(HTMLParser):
         self.targets += [attributes[name] for name in ("href", "src") if attributes.get(name)]
 
 
-@pytest.fixture(scope="module")
-def pages(tmp_path_factory, ran):
-    """The whole site: the site itself runs the first notebook, and takes the others from the tests of notebooks."""
-    target = tmp_path_factory.mktemp("site")
-    copies = notebooks()
-    _add_a_second_lab(copies[NOTEBOOK])
-    run_all = site.run_all
-
-    def taken(wanted, parallel):
-        yield from run_all({NOTEBOOK: wanted.pop(NOTEBOOK)}, 1)
-        for name in reversed(wanted):  # for their own tests begin with the first
-            ran(name)
-        for name in wanted:
-            assert ran(name).fault == ""
-            yield name, ran(name).notebook
-
-    with warnings.catch_warnings(), pytest.MonkeyPatch.context() as patch:
-        warnings.simplefilter("ignore")  # the generator's own
-        patch.setattr(site, "run_all", taken)
-        patch.setattr(site.lite, "write_lite", _write_no_lite)  # tests of its own build it
-        site.build(target, copies, exam=True, address=ADDRESS, python=True)
-    for path in (target / "notebooks").glob("[0-9]*.html"):  # as students get them: only teachers get the exam
-        text = path.read_text("utf-8")
-        path.write_text(text.replace("</body>", '<script src="../_static/exercises.js"></script></body>'), "utf-8")
-    return target
-
-
-def _write_no_lite(target, notebooks):
-    page = target / site.lite.PLACES["app"]
-    page.parent.mkdir(parents=True)
-    page.touch()
-
-
-def written(pages):
-    """The pages, in order; those of JupyterLite are no pages of ours."""
-    return sorted(path for path in pages.rglob("*.html") if path.relative_to(pages).parts[0] != "lite")
-
-
-def _add_a_second_lab(notebook):
-    code = {"cell_type": "code", "id": "second", "metadata": {}, "execution_count": None, "outputs": []}
-    notebook["cells"].append(
-        code | {"source": "from percept_obs.labs import observer_lab\nobserver_lab(outputs=['y1'])"}
-    )
-
-
-def kind(page):
-    """Return the kind of a page by its path below the site; each text and each notebook is a kind of its own."""
-    folder, *rest = page.parts
-    return (
-        page if len(rest) < 2 and folder not in ("reference", "slides") else (folder, len(rest), page.stem == "index")
-    )
-
-
-def of_each_kind(pages):
-    """A page of each kind: the many pages of one kind, such as a paper's equations, are all made the same way."""
-    return list({kind(path.relative_to(pages)): path for path in reversed(written(pages))}.values())
-
-
-looked_at = pytest.mark.parametrize("looked_at", [of_each_kind, pytest.param(written, marks=pytest.mark.night)])
+@pytest.mark.slow
+def test_the_whole_site_is_made(pages):
+    assert (pages / "index.html").exists()
 
 
 @pytest.mark.slow
@@ -151,35 +95,21 @@ def complaints_of(page):
 
 @pytest.mark.slow
 @pytest.mark.browser
-@looked_at
-def test_every_page_opens_without_an_error_or_a_request(pages, browser, looked_at):
+@pytest.mark.parametrize("part", range(PARTS))
+def test_a_page_opens_without_an_error_or_a_request_and_fits_every_window(pages, browser, part):
     axe = (FRONT / "node_modules/axe-core/axe.min.js").read_text("utf-8")
     page = browser.new_page(offline=True, viewport={"width": 1280, "height": 800})
-    complaints, labs, closely = complaints_of(page), 0, looked_at(pages)
-    for path in written(pages):
-        page.goto(path.as_uri())
-        if page.locator("[data-percept-obs]").count():
-            page.wait_for_function(DRAWN)
-            labs += page.locator("[data-percept-obs] .percept-lab").count()
-        assert complaints == [], path
-        if path in closely:
-            page.evaluate(axe)
-            found = page.evaluate("axe.run({ preload: false, resultTypes: ['violations'] })")["violations"]
-            assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == [], path
-    assert labs
-    page.close()
-
-
-@pytest.mark.slow
-@pytest.mark.browser
-@looked_at
-def test_a_page_fits_its_window_and_all_that_can_be_pressed_is_reached(pages, browser, looked_at):
-    page, looked = browser.new_page(offline=True), 0
-    for path in looked_at(pages):
+    complaints, looked = complaints_of(page), 0
+    for path in of_each_kind(pages)[part::PARTS]:
         page.goto(path.as_uri())
         page.wait_for_function("() => tests.allDrawn()")
+        page.evaluate(axe)
+        found = page.evaluate("axe.run({ preload: false, resultTypes: ['violations'] })")["violations"]
+        assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == [], path
         looked += assert_fits(page, path)
-    print(f"{len(looked_at(pages))} of {len(written(pages))} pages, {len(WIDTHS)} widths: {looked} controls reached")
+        assert complaints == [], path
+    print(f"part {part}: {looked} controls reached")
+    assert looked
     page.close()
 
 
@@ -324,12 +254,11 @@ def test_a_lab_of_the_site_is_alive(shown, what):
 @pytest.mark.slow
 @pytest.mark.browser
 @pytest.mark.node
-@looked_at
-def test_lighthouse_finds_every_page_open_to_all(pages, chromium, node, looked_at):
+def test_lighthouse_finds_every_page_open_to_all(pages, chromium, node):
     modules = FRONT / "node_modules"
     if not (modules / "lighthouse").exists():
         missing("lighthouse", f"Lighthouse is missing; get it with: npm install --no-save lighthouse@12, in {FRONT}")
-    names = [path.relative_to(pages).as_posix() for path in looked_at(pages)]
+    names = [path.relative_to(pages).as_posix() for path in of_each_kind(pages)]
     command = [node, SUPPORT / "lighthouse.mjs", modules, chromium, pages, *names]
     lines = subprocess.run(command, check=True, capture_output=True, encoding="utf-8").stdout.splitlines()
     found = [json.loads(line) for line in lines]

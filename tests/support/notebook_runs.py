@@ -45,15 +45,20 @@ def run(name, folder, recording=UTIAS_CUT):
     return Ran(nbformat.writes(notebook), widgets, fault)
 
 
-def shared_run(shared, name):
-    """The run of a notebook by the process that asked for it first; the others wait, and find it in a shared folder."""
-    folder, kept = shared / name, shared / f"{name}.pickle"
+def shared(base, name, make):
+    """What the process that asked for it first made in a folder of its own; the others wait for it."""
+    folder, kept = base / name, base / f"{name}.pickle"
     try:
         folder.mkdir()
     except FileExistsError:
-        wait_until(kept.exists, f"another process to run {name}", 600)
+        wait_until(kept.exists, f"another process to make {name}", 900)
     else:
         part = folder.with_suffix(".part")
-        part.write_bytes(pickle.dumps(run(name, folder)))
+        part.write_bytes(pickle.dumps(make(folder)))
         part.rename(kept)
     return pickle.loads(kept.read_bytes())
+
+
+def shared_run(base, name):
+    """The run of a notebook by the process that asked for it first."""
+    return shared(base, name, lambda folder: run(name, folder))
