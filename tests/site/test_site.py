@@ -37,6 +37,8 @@ from percept_obs.site.slides import NEXT, slides_of
 
 PARTS = 12
 """Tests that share the pages of each kind."""
+CLOSELY = ("00_start", "05_structure_and_motion")
+"""Notebooks whose pages axe looks at: all are made the same way, and these have all that others have."""
 
 
 class Links(HTMLParser):
@@ -103,10 +105,12 @@ def test_a_page_opens_without_an_error_or_a_request_and_fits_every_window(pages,
     for path in of_each_kind(pages)[part::PARTS]:
         page.goto(path.as_uri())
         page.wait_for_function("() => tests.allDrawn()")
-        page.evaluate(axe)
-        found = page.evaluate("axe.run({ preload: false, resultTypes: ['violations'] })")["violations"]
-        assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == [], path
-        looked += assert_fits(page, path)
+        if path.parent.name != "notebooks" or path.stem in CLOSELY:
+            page.evaluate(axe)
+            options = "{ exclude: ['.percept-lab'] }, { preload: false, resultTypes: ['violations'] }"
+            found = page.evaluate(f"axe.run({options})")["violations"]
+            assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == [], path
+        looked += assert_fits(page, path, drawers=False)  # a lab's own tests look into its drawer
         assert complaints == [], path
     print(f"part {part}: {looked} controls reached")
     assert looked

@@ -3,12 +3,12 @@
 WIDTHS = (360, 390, 768, 1024, 1280, 1440, 1920)
 
 
-def assert_fits(page, name):
-    """Hold the law at all widths, and return the number of controls that were reached."""
+def assert_fits(page, name, drawers=True):
+    """Hold the law at all widths, in the drawers of labs too if asked, and return the number of controls reached."""
     looked = 0
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 800})
-        found = page.evaluate("tests.fits()")
+        found = page.evaluate("(drawers) => tests.fits(drawers)", drawers)
         assert found["wrong"] == [], f"{name}, {width} px wide: {found['wrong']}"
         looked += found["looked"]
     return looked
