@@ -10,9 +10,9 @@ from types import EllipsisType, MappingProxyType
 from typing import Any
 
 from percept_obs.checking import Review, Target, check, target_of
-from percept_obs.validation import checked, refuse_kind
+from percept_obs.validation import checked, of_kind
 from percept_obs.validation.arguments import described
-from percept_obs.validation.kinds import is_real
+from percept_obs.validation.plain import is_real
 
 
 @checked
@@ -217,7 +217,7 @@ def reach(mine: Any, judge: Callable[[Any], Mapping[str, float]], **most: float)
     except REFUSALS as error:
         quoted = "; a number stands without quotes" if isinstance(mine, str) else ""
         return Attempt(None, f"The experiment cannot run with {mine!r}{quoted}. It says: {error}")
-    refuse_kind("reach", f"what {getattr(judge, '__name__', 'judge')} returns", numbers, Mapping[str, Any])
+    of_kind("reach", f"what {getattr(judge, '__name__', 'judge')} returns", numbers, Mapping[str, Any])
     if missing := [name for name in sorted(most) if not is_real(numbers.get(name))]:
         given = (f"{name}, {described(value)}" if name in missing else name for name, value in numbers.items())
         raise ValueError(f"the experiment gives no number {', '.join(missing)}; it gives {', '.join(given)}")

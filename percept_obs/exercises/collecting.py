@@ -23,7 +23,7 @@ from percept_obs.exercises.individual import OURS, individual, same_name
 from percept_obs.exercises.marking import LONGEST, answered, lesson, marks, programs, run
 from percept_obs.exercises.models import notebooks
 from percept_obs.validation import bar
-from percept_obs.validation.kinds import is_real
+from percept_obs.validation.plain import is_real
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -17,7 +17,7 @@ from percept_obs.observers.inversion import Unobservable
 from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm, NotAffine, PartitionedSystem
 from percept_obs.system.perspective import PerspectiveSystem
-from percept_obs.validation import WrongKind, refuse_kind, set_fields
+from percept_obs.validation import WrongKind, of_kind, set_fields
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,7 @@ class Family:
 
     def __post_init__(self) -> None:
         for name, kind in (("name", str), ("gains", tuple[Gain, ...]), ("options", tuple[Option, ...])):
-            refuse_kind("family", name, getattr(self, name), kind)
+            of_kind("family", name, getattr(self, name), kind)
         names = {name: getattr(self.derive, name) for name in ("__name__", "__qualname__", "__module__")}
         set_fields(self, **names, __doc__=self._docstring(), __signature__=self._signature())
 
@@ -192,7 +192,7 @@ class Family:
 
     def objection(self, form: PartitionedSystem) -> ValueError | None:
         """Error that a call with this form raises; None if there is an observer of it."""
-        refuse_kind(self.key, "form", form, PartitionedSystem)
+        of_kind(self.key, "form", form, PartitionedSystem)
         if self.any_form:
             return None
         if form.culprits:
@@ -213,7 +213,7 @@ class Family:
         ValueError
             The `objection`, or if an option or a gain is refused.
         """
-        refuse_kind(self.key, "form", form, PartitionedSystem | PerspectiveSystem)
+        of_kind(self.key, "form", form, PartitionedSystem | PerspectiveSystem)
         if isinstance(form, PerspectiveSystem):
             form = form.partition(*(symbol.name for symbol in form.surface.image_coordinates))
         objection = self.objection(form)
@@ -226,7 +226,7 @@ class Family:
         settings |= dict(zip(settings, options, strict=False))
         settings |= {name: chosen.pop(name) for name in settings if name in chosen}
         derived = self.derive(form, **settings)
-        refuse_kind(self.key, "what it derives", derived, Derived)
+        of_kind(self.key, "what it derives", derived, Derived)
         gains = derived.gains or self.gains
         x = (*form.x1, *form.x2)
         estimate, covariance = derived.estimate or hats(x), derived.covariance

@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from percept_obs.validation import checked, refuse_kind, refuse_names, set_fields
+from percept_obs.validation import checked, of_kind, refuse_names, set_fields
 
 
 @dataclass(frozen=True)
@@ -69,10 +69,11 @@ class Gain:
     def __post_init__(self) -> None:
         if not str(self.name).isidentifier() or keyword.iskeyword(self.name) or self.name.startswith("_"):
             raise ValueError(f"a gain has the name {self.name!r}; give it a name in Python, such as 'gain'")
-        refuse_kind("the gain", "symbol", self.symbol, sp.Symbol)
+        of_kind("the gain", "symbol", self.symbol, sp.Symbol)
         refuse_names([self.symbol], self.name)
-        for label, number in ((self.name, self.value), ("low", self.low), ("high", self.high)):
-            refuse_kind("the gain", label, number, float)
+        for label in ("value", "low", "high"):
+            name = self.name if label == "value" else label
+            set_fields(self, **{label: of_kind("the gain", name, getattr(self, label), float)})
         if not self.low < self.high:
             raise ValueError(f"{self.name} is to be explored from {self.low} to {self.high}; give the lower end first")
         value = float(self.value)

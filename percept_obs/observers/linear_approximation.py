@@ -7,7 +7,7 @@ from percept_obs.observers.family import Derived, Option, family
 from percept_obs.observers.gains import Gain, grid
 from percept_obs.observers.parts import hats
 from percept_obs.system.forms import CanonicalForm
-from percept_obs.validation import limit, refuse_kind
+from percept_obs.validation import limit, of_kind
 
 Q, R, P0, kappa = sp.symbols("Q R P0 kappa", real=True)
 HIDDEN = "how much more both are in the hidden part"
@@ -73,7 +73,7 @@ def linear_approximation(form: CanonicalForm, iterates: int) -> Derived:
     >>> len(observer.equations.state), observer.estimate
     (18, (yhat1_2, yhat2_2, yhat3_2))
     """
-    refuse_kind("linear_approximation", "iterates", iterates, int)
+    of_kind("linear_approximation", "iterates", iterates, int)
     if iterates < 1:
         raise ValueError(f"the cascade has {iterates!r} iterates; it needs at least one")
     limit(iterates, "iterates", "take fewer", MOST_ITERATES)

@@ -6,7 +6,7 @@ from types import MappingProxyType
 import sympy as sp
 
 from percept_obs.observers.family import Option
-from percept_obs.validation import refuse_kind
+from percept_obs.validation import of_kind
 
 Switch = Callable[[sp.Expr, sp.Expr], sp.Expr]
 
@@ -27,7 +27,7 @@ def switch_option(own: str, meaning: str) -> Option:
 
 def switch_named(name: str) -> Switch:
     """Way to switch with this name; refuse an unknown one."""
-    refuse_kind("the observer", "switch", name, str)
+    of_kind("the observer", "switch", name, str)
     if name not in SWITCHES:
         raise ValueError(f"the switch {name!r} is none of {', '.join(map(repr, SWITCHES))}")
     return SWITCHES[name]

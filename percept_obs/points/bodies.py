@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike
 
 from percept_obs.points.form import PointsForm
 from percept_obs.system.motion import Motion, at_rest_if_left_out, bound, cross
 from percept_obs.system.surfaces import ImagingSurface, pinhole
-from percept_obs.validation import Coefficients, checked, limit
+from percept_obs.validation import Coefficients, Times, checked, limit
 
 MOST_POINTS = 200
 """Most points of a body: sympy places their blocks within a few seconds."""
@@ -65,7 +64,7 @@ def rigid_body(
     camera_velocity: Coefficients | None = None,
     body_angular_velocity: Coefficients | None = None,
     point_velocity: Coefficients | None = None,
-    times: ArrayLike | None = None,
+    times: Times | None = None,
     surface: ImagingSurface | None = None,
 ) -> PointsForm:
     """Return the form of a rigid body in a moving camera's frame: x = (r, d_2, ..., d_p), point and offsets from it.
@@ -156,7 +155,7 @@ def body_with_origin(
     return form_of(motion, ["o", *(f"d{k}" for k in others)], [[0, k] for k in others], None)
 
 
-def _body_motion(name: str, vectors: int, velocities: tuple[Any, ...], times: ArrayLike | None) -> Motion:
+def _body_motion(name: str, vectors: int, velocities: tuple[Any, ...], times: Times | None) -> Motion:
     """Motion of one position and of vectors that turn with a body."""
     w_c, v_c, w_b, v_p = (sp.ImmutableMatrix(sp.symbols(f"{n}1:4", real=True)) for n in ("w_c", "v_c", "w_b", "v_p"))
     symbols = (w_c, v_c, w_b, v_p)

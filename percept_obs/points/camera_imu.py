@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sympy as sp
-from numpy.typing import ArrayLike
 
 from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.points.bodies import form_of, placed
@@ -11,7 +10,7 @@ from percept_obs.points.form import PointsForm
 from percept_obs.points.lyapunov_matrix import LyapunovMatrix, riccati
 from percept_obs.system.inertial import a, w
 from percept_obs.system.motion import bound, cross
-from percept_obs.validation import Coefficients, checked, positive
+from percept_obs.validation import Coefficients, Times, checked, positive
 
 
 @checked
@@ -19,7 +18,7 @@ def camera_imu(
     points: int = 1,
     turning: Coefficients | None = None,
     force: Coefficients | None = None,
-    times: ArrayLike | None = None,
+    times: Times | None = None,
 ) -> PointsForm:
     """Return the form of landmarks at rest, seen by a camera with an IMU: x = (p_1, ..., p_n, v, g).
 

@@ -19,7 +19,7 @@ from percept_obs.system.derivation import Derivation, equals
 from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import POINT, ImagingSurface, pinhole
-from percept_obs.validation import Entries, checked, expression, matrix, numbers, set_fields, warn
+from percept_obs.validation import Entries, Times, checked, expression, matrix, numbers, set_fields, warn
 
 DRAWS = 4
 """Number of draws of a motion's symbols, by which directions are found that no motion shows."""
@@ -200,11 +200,11 @@ class PointsForm:
         rows, columns, which = places.T.copy()
         return Layout(rows, columns, which, distinct)
 
-    def numbers(self, times: ArrayLike) -> Array:
+    def numbers(self, times: Times) -> Array:
         """Numbers of the layout's expressions at the given times, shape (T, u) or (1, u) when constant."""
         return self._evaluated(self.motion.known(times))
 
-    def coefficients(self, times: ArrayLike) -> tuple[Array, Array]:
+    def coefficients(self, times: Times) -> tuple[Array, Array]:
         """A and v at the given times, shapes (T, n, n) and (T, n), or (1, ...) when constant."""
         together = self._dense(self.numbers(times))
         return together[:, :, :-1], together[:, :, -1]

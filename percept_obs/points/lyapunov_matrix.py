@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags
 from percept_obs.system.signal import Signal
-from percept_obs.validation import checked, numbers, positive, require_definite
+from percept_obs.validation import Times, checked, numbers, positive, require_definite
 
 DIFFERENCE = 1e-5
 """Half of the time, in seconds, over which a scheduled P is differenced."""
@@ -98,12 +98,12 @@ class LyapunovMatrix:
         require_definite("the decrease of P", decrease, semi=True)
         return replace(self, start=start, decrease=decrease)
 
-    def at(self, times: ArrayLike) -> Array:
+    def at(self, times: Times) -> Array:
         """A given P at the given times, shape (T, n, n), or (1, n, n) when constant; ValueError if it is computed."""
         rows = self._given.at(times)
         return np.stack([_square(row, len(self.start)) for row in rows])
 
-    def rate(self, times: ArrayLike) -> Array:
+    def rate(self, times: Times) -> Array:
         """Derivative of a given P at the given times, shape (T, n, n); ValueError if it is computed."""
         given, times = self._given, np.atleast_1d(np.asarray(times, dtype=float))
         if given.constant:
@@ -146,7 +146,7 @@ def constant(P: ArrayLike = 1.0) -> LyapunovMatrix:
 
 
 @checked
-def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: ArrayLike | None = None) -> LyapunovMatrix:
+def scheduled(P: Callable[[float], ArrayLike] | ArrayLike, times: Times | None = None) -> LyapunovMatrix:
     """Return P as a function of time, or from samples.
 
     Parameters

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array
 from percept_obs.points.bodies import rigid_body
@@ -15,7 +14,7 @@ from percept_obs.points.manoeuvre import PATH, Manoeuvre
 from percept_obs.recording import Scene
 from percept_obs.recording.path import constant_path, times_of, varying_path
 from percept_obs.system.motion import TIME, Motion, linear
-from percept_obs.validation import checked, set_fields
+from percept_obs.validation import Times, checked, set_fields
 
 
 class LeavesEveryBound(ValueError):
@@ -79,7 +78,7 @@ class PointsScenario(Scene):
         """The form's motion."""
         return self.form.motion
 
-    def coordinates(self, times: ArrayLike) -> Array:
+    def coordinates(self, times: Times) -> Array:
         """States at times from 0 on that do not decrease, shape (K, n), as exact as those of a `Scenario`.
 
         It raises LeavesEveryBound if the state grows beyond all bounds before, and TooMuchWork if the motion is too

@@ -9,19 +9,27 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags
+from percept_obs.recording.plausibility import Unlikely
 from percept_obs.system.motion import Motion
 from percept_obs.system.view import View
-from percept_obs.validation import Kind, checked, limit
+from percept_obs.validation import INTEGER, Kind, Times, checked, limit, warn
 
 TOO_SHORT = "a duration of {duration} s holds no two samples {period} s apart; record longer"
 """Reason why a recording of one sample is refused, here and in live labs."""
 
-Seed = np.random.Generator | int
+SLOWEST = 10.0
+"""Seconds between two pictures from which on so many pictures a second are more likely."""
+
 _SIZES = Kind("a tuple of sizes from 0 on", lambda v: isinstance(v, tuple) and all(size >= 0 for size in v))
 Shape = Annotated[tuple[int, ...], _SIZES]
+_SEED = Kind(
+    "a numpy Generator, a whole number from 0 to 2^32 - 1, or None for one drawn anew",
+    lambda v: isinstance(v, np.random.Generator) or (INTEGER.fits(v) and 0 <= v < 2**32),
+    made=lambda v: int(np.random.SeedSequence().generate_state(1)[0]) if v is None else INTEGER.made(v),
+)
+Seed = Annotated[np.random.Generator | int | None, _SEED]
 
 
 class _Noise:
@@ -140,6 +148,11 @@ class Camera:
     ValueError
         If a number is out of its range.
 
+    Warns
+    -----
+    Unlikely
+        If the period looks like pictures a second.
+
     See Also
     --------
     record : Records a scenario with a camera.
@@ -167,6 +180,9 @@ class Camera:
         ):
             if not holds:
                 raise ValueError(f"the camera's {name} is {getattr(self, name)}{unit}; {expected}")
+        if self.period >= SLOWEST:
+            each = f"{self.period:.4g}"
+            warn(Unlikely(f"the camera takes a picture every {each} s; for {each} pictures a second, Camera(1/{each})"))
 
     def times(self, duration: float, each: int = 1) -> Array:
         """Return the times of the samples in seconds, from 0 on, shape (K,).
@@ -246,7 +262,7 @@ class Scene(ABC):
         """Motion as an observer may know it."""
 
     @abstractmethod
-    def coordinates(self, times: ArrayLike) -> Array:
+    def coordinates(self, times: Times) -> Array:
         """Return true coordinates of the view at times in seconds from 0 on, shape (K, n)."""
 
     @property
@@ -268,13 +284,14 @@ class Scene(ABC):
         return tuple(array.tolist())
 
 
+@checked
 def seeded(seed: Seed) -> np.random.Generator:
     """Return the Mersenne Twister MT19937 with its reference seeding, the same in every language.
 
     Parameters
     ----------
-    seed : int or numpy Generator
-        A generator is returned as it is.
+    seed : int, numpy Generator or None
+        A generator is returned as it is; with None, a seed is drawn.
 
     Raises
     ------
@@ -291,11 +308,7 @@ def seeded(seed: Seed) -> np.random.Generator:
     >>> seeded(1).random(2).round(3).tolist()
     [0.417, 0.72]
     """
-    if isinstance(seed, np.random.Generator):
-        return seed
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**32:
-        raise ValueError(f"the seed {seed!r} is neither a numpy Generator nor a whole number from 0 to 2^32 - 1")
-    return next(_generators([int(seed)]))
+    return seed if isinstance(seed, np.random.Generator) else next(_generators([seed]))
 
 
 def _generators(seeds: Iterable[int]) -> Iterator[np.random.Generator]:

@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array
 from percept_obs.recording.recording import Recording
 from percept_obs.system.signal import frozen
-from percept_obs.validation import Kind, checked, limit, numbers
+from percept_obs.validation import Kind, Times, checked, limit, numbers
 
 SIGNATURES = (b"\x89PNG", b"\xff\xd8\xff")
 """First bytes of a PNG file and of a JPEG file."""
@@ -58,7 +57,7 @@ class Frames:
     """
 
     images: Annotated[Any, Kind("a folder, or a sequence of files or arrays", lambda v: isinstance(v, Path | Iterable))]
-    time: ArrayLike
+    time: Times
     extent: Sequence[float]
 
     def __post_init__(self) -> None:
@@ -90,7 +89,7 @@ def _encoded(image: Any, number: int) -> bytes:
             raise ValueError(f"frame {number},{named} is no PNG or JPEG file; convert it")
         return data
     pixels = numbers(image, f"the pixels of frame {number}")
-    most = 1 if np.asarray(image).dtype.kind in "bf" else 255
+    most = 1 if np.asarray(image).dtype.kind == "f" else 255
     if pixels.ndim not in (2, 3) or (pixels.ndim == 3 and pixels.shape[2] != 3) or not pixels.size:
         raise ValueError(f"frame {number} has the shape {pixels.shape}; expected (h, w), or (h, w, 3) for colours")
     if not (pixels.min() >= 0 and pixels.max() <= most):

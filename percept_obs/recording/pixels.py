@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 import sympy as sp
@@ -95,8 +95,6 @@ class PixelCamera:
             if values.shape != (2,) or not ((values > least) & np.isfinite(values)).all():
                 raise ValueError(f"{name} is {getattr(self, name)!r}; it must be two {kind} numbers of pixels")
             vars(self)[name] = tuple(map(int, values) if name == "size" else values.tolist())
-        if self.lens not in get_args(Lens):
-            raise ValueError(f"the lens is {self.lens!r}, none of {', '.join(get_args(Lens))}")
         lens = np.asarray(self.distortion, dtype=float)
         counts = LENS_COUNTS[:2] if self.lens == "equidistant" else LENS_COUNTS
         if lens.size not in counts or not np.isfinite(lens).all():

@@ -20,12 +20,21 @@ SHORTEST_STEP, USUAL_STEP, LONGEST_STEP = 1e-5, 0.03, 20.0
 """Seconds between two rows of a trajectory or an IMU: what is shorter or longer was counted in another unit."""
 
 
+LATEST = 1e11
+"""Seconds that no clock shows, 3,000 years."""
+
+
 class Unlikely(UserWarning):
     """A recording can be followed, but is hardly what was meant."""
 
 
 def ask_for_seconds(times: Array, what: str) -> None:
-    """Warn of times that are hardly seconds; a few may lie far apart."""
+    """Refuse times that cannot be seconds, and warn of those that hardly are; a few may lie far apart."""
+    if len(times) and np.abs(times).max() > LATEST:
+        raise ValueError(
+            f"{what} has times up to {times[-1]:.4g} s, which no clock shows; if they are nanoseconds since 1970, "
+            "subtract the first one and multiply by 1e-9"
+        )
     step = float(np.median(np.diff(times))) if len(times) > 5 else SHORTEST_STEP
     if not SHORTEST_STEP <= step <= LONGEST_STEP:
         warn(Unlikely(f"{what} has {step:.3g} s from one sample to the next; are its times seconds?"))

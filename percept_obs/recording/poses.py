@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +15,7 @@ from percept_obs.recording.pose_errors import PoseErrors
 from percept_obs.recording.smoother import FEWEST, Smoothed, smooth, smooth_turns
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import readonly
-from percept_obs.validation import checked, limit, numbers, warn
+from percept_obs.validation import TIMES, Times, checked, limit, numbers, warn
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -76,7 +76,7 @@ class Poses:
     [0.0, -0.1, 0.0]
     """
 
-    time: Array
+    time: Annotated[Array, TIMES]
     position: Array
     orientation: Array
     sigma: tuple[float, float] = (0.0, 0.0)
@@ -313,7 +313,7 @@ class CameraPath:
         motion = rigid(camera_angular_velocity=self.angular_velocity, camera_velocity=self.velocity, times=self.time)
         return replace(motion, errors=self.errors)
 
-    def at(self, times: ArrayLike) -> CameraPath:
+    def at(self, times: Times) -> CameraPath:
         """Return the path at some times in seconds, shape (T,); ValueError if one lies before or after it."""
         from scipy.interpolate import CubicHermiteSpline
         from scipy.spatial.transform import Slerp
@@ -338,7 +338,7 @@ class CameraPath:
 
 @checked
 def rigid_from_poses(
-    times: ArrayLike,
+    times: Times,
     positions: ArrayLike,
     orientations: ArrayLike,
     frame: Literal["world", "camera"] = "world",
@@ -388,8 +388,6 @@ def rigid_from_poses(
     >>> motion.known([0.5]).round(9)[0, [0, 3]].tolist()
     [0.1, 0.2]
     """
-    if frame not in ("world", "camera"):
-        raise ValueError(f"the frame {frame!r} is none of 'world' and 'camera'")
     time, position, turns = numbers(times, "the times"), numbers(positions, "the positions"), orientations
     poses = Poses(time, position, numbers(turns, "the orientations"), sigma, correlated)
     if frame == "camera":

@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from percept_obs.compile import Array, Flags, vectorised
 from percept_obs.recording.pixels import PixelCamera
-from percept_obs.recording.plausibility import warn_if_implausible
+from percept_obs.recording.plausibility import ask_for_seconds, warn_if_implausible
 from percept_obs.recording.pose_errors import VirtualLandmark
 from percept_obs.recording.reckoning import point_on_rays, reckon
 from percept_obs.recording.text_table import SECONDS, Clock, PathLike
@@ -22,7 +22,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.signal import readonly
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface, pinhole
 from percept_obs.system.view import View, refuse_several
-from percept_obs.validation import checked, load_pandas
+from percept_obs.validation import TABLE, TIMES, checked, load_pandas
 
 USUAL_SPEED = 0.6
 """Speed in units of length a second that default gains are made for, about that of Ma's examples."""
@@ -64,7 +64,7 @@ class Recording:
     time : array of shape (K,)
         Seconds, strictly increasing.
     outputs : array of shape (K, m), or (K, p, m) for p points
-        Samples of the image coordinates; NaN where one was lost.
+        Samples of the image coordinates; NaN where one was lost.  Of a table, the columns with the outputs' names.
     names : tuple of str
         Names of a point's outputs, such as ("y1", "y2").
     view : View
@@ -114,12 +114,12 @@ class Recording:
     <Recording of y1 (pinhole): 2 samples from 0 to 0.1 s, without a truth; two pictures>
     """
 
-    time: Array
-    outputs: Array
+    time: Annotated[Array, TIMES]
+    outputs: Annotated[Array, TABLE]
     names: tuple[str, ...]
     view: View
     motion: Motion
-    truth: Array | None = None
+    truth: Annotated[Array, TABLE] | None = None
     signal: Callable[[Array], Array] | None = None
     noise_variance: float | None = None
     distances: Mapping[str, Array] = field(default_factory=dict)
@@ -128,15 +128,14 @@ class Recording:
     doubt: str = ""
 
     def __post_init__(self) -> None:
-        _refuse_order("outputs", self.outputs, list(self.names))
-        _refuse_order("truth", self.truth, [symbol.name for symbol in self.view.coordinates])
-        truth = None if self.truth is None else readonly(self.truth)
+        outputs = _by_name("outputs", self.outputs, self.names)
+        truth = _by_name("truth", self.truth, [symbol.name for symbol in self.view.coordinates])
         distances = MappingProxyType({name: readonly(values) for name, values in self.distances.items()})
         vars(self).update(
             time=readonly(self.time),
-            outputs=readonly(self.outputs),
+            outputs=readonly(outputs),
             names=tuple(self.names),
-            truth=truth,
+            truth=None if truth is None else readonly(truth),
             distances=distances,
         )
         self._check_times()
@@ -171,6 +170,7 @@ class Recording:
                 f"the recording's times must increase strictly and be finite; look at row {k + 1}, "
                 f"{float(time[k])!r} s: sort the rows and remove repeated ones"
             )
+        ask_for_seconds(time, "the recording")
 
     def _check_outputs(self) -> None:
         expected = (len(self.time), *self.view.point_shape, len(self.names))
@@ -461,11 +461,12 @@ class Recording:
         return recordings[0] if point is None else recordings
 
 
-def _refuse_order(name: str, table: Any, expected: list[str]) -> None:
-    """Refuse a table of pandas whose columns have other names or another order, for arrays are taken by position."""
-    found = [column for column in getattr(table, "columns", ()) if isinstance(column, str)]
-    if found and found != expected:
+def _by_name(name: str, table: Any, expected: Sequence[str]) -> Any:
+    """Columns of a table by their names, shape (K, m); what is no table as it is."""
+    if not isinstance(table, Mapping):
+        return table
+    if missing := [column for column in expected if column not in table]:
         raise ValueError(
-            f"{name} is a table with the columns {', '.join(found)}, but {', '.join(expected)} are expected, in this "
-            f"order: pass table[{expected!r}]"
+            f"{name} is a table with the columns {', '.join(table)}; it needs {', '.join(missing)}: rename them"
         )
+    return np.stack([table[column] for column in expected], axis=-1)

@@ -20,7 +20,7 @@ from percept_obs.recording.recording import Recording
 from percept_obs.system.motion import Motion, ask_for_degrees, coefficients
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 from percept_obs.system.view import View
-from percept_obs.validation import checked, travels
+from percept_obs.validation import Times, checked, travels
 
 LONGEST_STEP_SHARE = 0.25
 """Longest interval between two checks of the distance, as a share of the motion's shortest time constant."""
@@ -85,7 +85,7 @@ class Scenario(Scene):
         self.motion.refuse_unit(self.unit)
         self.surface.project(self.position)
 
-    def points(self, times: ArrayLike) -> Array:
+    def points(self, times: Times) -> Array:
         """Return positions of the point in metres, shape (K, 3).
 
         They are exact if the motion is constant, else to a relative error of 1e-10 a step.
@@ -109,11 +109,11 @@ class Scenario(Scene):
             raise BehindCamera(f"the point leaves every bound at {when:.4g} s; shorten the duration")
         return points
 
-    def in_front(self, times: ArrayLike) -> Flags:
+    def in_front(self, times: Times) -> Flags:
         """Return True for times, as in `points`, at which the point is in front of the camera, shape (K,)."""
         return self.surface.sees(self._path(times))
 
-    def _path(self, times: ArrayLike) -> Array:
+    def _path(self, times: Times) -> Array:
         """Positions of the point, shape (K, 3); NaN once it has gone to infinity."""
         times, start, motion = times_of(times, len(POINT)), np.array(self.position), self.motion
         motion.known(times[:1])
@@ -140,7 +140,7 @@ class Scenario(Scene):
         """Motion, known completely."""
         return self.motion
 
-    def coordinates(self, times: ArrayLike) -> Array:
+    def coordinates(self, times: Times) -> Array:
         """Return image coordinates and inverse distance of the point, which must stay in front, shape (K, n)."""
         times = times_of(times, len(POINT))
         points = self.points(times)
@@ -185,8 +185,8 @@ def record(scenario: Scene, duration: float | None = None, camera: Camera | None
         Seconds; the scenario's own when left out.
     camera : Camera, optional
         The scenario's own when left out, which has no noise.
-    seed : int or numpy Generator
-        Of the noise and the lost samples, drawn in this order.
+    seed : int, numpy Generator or None
+        Of the noise and the lost samples, drawn in this order.  With None a seed is drawn, which the source names.
 
     Returns
     -------

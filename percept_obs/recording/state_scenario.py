@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Table, solve
 from percept_obs.compile.equations import Equations
@@ -15,7 +14,7 @@ from percept_obs.recording.camera import Scene
 from percept_obs.recording.path import times_of
 from percept_obs.system.motion import Motion
 from percept_obs.system.state_view import StateView
-from percept_obs.validation import checked, set_fields
+from percept_obs.validation import Times, checked, set_fields
 
 
 @checked
@@ -82,7 +81,7 @@ class StateScenario(Scene):
         """Motion as an observer knows it."""
         return self.measured or self.motion
 
-    def coordinates(self, times: ArrayLike) -> Array:
+    def coordinates(self, times: Times) -> Array:
         """Return true coordinates at times from 0 on that do not decrease, shape (K, n)."""
         times, motion = times_of(times, len(self.state)), self.motion
         breaks = np.asarray(() if motion.signal is None else motion.signal.breaks(times[-1]), dtype=float)

@@ -13,22 +13,19 @@ from decimal import Decimal, InvalidOperation
 from io import StringIO
 from numbers import Integral
 from types import MappingProxyType
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 
 from percept_obs.compile import Array, Flags
 from percept_obs.recording.first_lines import refuse_others
-from percept_obs.recording.plausibility import LONGEST_STEP, SHORTEST_STEP, USUAL_STEP, Unlikely
+from percept_obs.recording.plausibility import LATEST, LONGEST_STEP, SHORTEST_STEP, USUAL_STEP, Unlikely
 from percept_obs.validation import checked, load_pandas, warn
 
 PathLike = str | os.PathLike[str]
 
 LARGEST_POWER = 300
 """Largest power of ten of a clock's reading, near that of a float."""
-
-LATEST = 1e11
-"""Seconds that no clock shows, 3,000 years."""
 
 ROUGH = 1e-3
 """Share of a step by which times may be rounded: a filter's speeds have larger errors."""
@@ -142,8 +139,6 @@ class TextTable:
 
         Rows with the time of the one before are refused or dropped, with their number.
         """
-        if repeated not in get_args(Repeated):
-            raise ValueError(f"repeated is {repeated!r}; it must be 'refuse', or 'drop' to leave such rows out")
         time = self.seconds(name, clock)
         again = np.append(False, np.diff(time) == 0)
         kept = time[~again]

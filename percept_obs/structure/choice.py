@@ -17,7 +17,7 @@ from percept_obs.system.forms import CanonicalForm, partition
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import DISTANCE, OnePoint, View
-from percept_obs.validation import checked, numbers, set_fields
+from percept_obs.validation import Times, checked, numbers, set_fields
 
 QUANTITIES = (d_s.name, *(symbol.name for symbol in (*CAMERA, *OBJECT)))
 """Names of possible unknowns: the scale d_s in 1/m, the camera's velocity v_c and the object's v_p in m/s."""
@@ -237,7 +237,7 @@ class StructureAndMotion(OnePoint):
         both = sp.ImmutableMatrix.hstack(-numerator * changed, numerator[:, OUTPUTS.index(ybar3)])
         return (both / determinant).applyfunc(sp.cancel)
 
-    def theta_values(self, scale: ArrayLike, motion: Motion, times: ArrayLike) -> Array:
+    def theta_values(self, scale: ArrayLike, motion: Motion, times: Times) -> Array:
         """True theta of a rigid motion at some times, shape (K, n), for a true scale d_s in 1/m."""
         self.known_motion(motion)  # which refuses another one
         times, scale = np.atleast_1d(numbers(times, "the times")), numbers(scale, "the scale")

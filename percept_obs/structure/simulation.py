@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array
 from percept_obs.recording import NO_NOISE, Camera, Gaussian, Noise, Recording, Scenario, Scene
@@ -19,7 +18,7 @@ from percept_obs.structure.pixels import SignalToNoise, homography
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import pinhole
 from percept_obs.system.view import View
-from percept_obs.validation import Chain, checked, limit, numbers, set_fields
+from percept_obs.validation import Chain, Times, checked, limit, numbers, set_fields
 
 NAMES = tuple(symbol.name for symbol in OUTPUTS)
 
@@ -250,7 +249,7 @@ class StructureScenario(Scenario):
         """One picture a millisecond without noise."""
         return ScaledDepthCamera()
 
-    def coordinates(self, times: ArrayLike) -> Array:
+    def coordinates(self, times: Times) -> Array:
         """True (y1, y2, ybar3) and theta at some times in seconds, shape (K, 3 + n)."""
         ybar = super().coordinates(times) / [1.0, 1.0, self.scale]
         return np.hstack([ybar, self.choice.theta_values(self.scale, self.motion, times)])

@@ -106,8 +106,6 @@ def semigeneral(
     [0.0, 0.0, -0.0]
     """
     choice = COROLLARIES[0].choice()
-    if camera not in ("kept", "given"):
-        raise ValueError(f"the camera {camera!r} is neither 'kept' nor 'given'")
     begin, end = recording.time[[1, -2]]
     if not begin <= moves_at <= end:
         raise ValueError(f"the object moves at {moves_at} s; each stage needs two samples: {begin:.4g} to {end:.4g} s")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import product
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 
@@ -147,8 +147,6 @@ def all_observers(
     once(after=after, references=references)
     if len(choosing) and split != "alternating":
         raise ValueError("choosing says which recordings to choose on, and so does split; give one of the two")
-    if split not in get_args(Split):
-        raise ValueError(f"the split {split!r} is none of {' and '.join(map(repr, get_args(Split)))}")
     if max_tracks is not None and max_tracks < 2:
         raise ValueError(f"max_tracks is {max_tracks}; two are needed, one to choose gains on and one to report on")
     if len({id(each) for each in (*choosing, *recordings)}) < len(choosing) + len(recordings):

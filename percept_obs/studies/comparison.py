@@ -324,9 +324,9 @@ def compare(
 def number_of(name: str, of: Callable[[Run], float], run: Run) -> float:
     """Return what a column has of a run; raise ValueError if it is no number."""
     found = of(run)
-    if (size := numbers(found, f"column {name!r} of a run").size) != 1:
+    if (size := (values := numbers(found, f"column {name!r} of a run")).size) != 1:
         raise ValueError(f"column {name!r} of a run is {size} numbers; let its function return one, such as their mean")
-    return found
+    return found if isinstance(found, int | float | np.number) else values.item()
 
 
 def rows_of(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence, Sized
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing
 from dataclasses import replace
@@ -23,7 +23,7 @@ from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT
 from percept_obs.tracking.following import DoesNotFit, named_start, track
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import bar, checked, limit, needed, positive, warn, workers
+from percept_obs.validation import bar, checked, limit, listed, needed, positive, warn, workers
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -132,24 +132,27 @@ def ensemble(
     needed("course", "xarray")
     camera, motion = camera or scenario.camera, believed or scenario.motion
     duration = scenario.duration if duration is None else float(duration)
-    limit(float(seeds) if isinstance(seeds, int | np.integer) else len(seeds), "seeds", "take fewer", MOST_RUNS)
+    over = {name: listed(values) if isinstance(values, Iterator) else values for name, values in (over or {}).items()}
+    sizes = {"seed": int(seeds) if isinstance(seeds, int | np.integer) else len(seeds)}
+    for name, values in over.items():
+        sizes |= getattr(values, "sizes", {name: len(values) if isinstance(values, Sized) else 1})
+    limit(float(math.prod(sizes.values())), "runs", "take fewer values or seeds", MOST_RUNS)
     several: Array = np.asarray(range(seeds) if isinstance(seeds, int | np.integer) else seeds)
     names = units(scenario, observer, motion)
-    if unknown := sorted(set(over or {}) - set(names)):
+    if unknown := sorted(set(over) - set(names)):
         raise ValueError(f"over has {', '.join(unknown)}, which cannot vary here; there are {', '.join(names)}")
     if not several.size or several.ndim != 1 or several.dtype.kind not in "iu" or several.min() < 0:
         raise ValueError(f"the seeds are {seeds!r}; give whole numbers from 0 on, or how many of them")
     if len(np.unique(several)) < len(several):
         raise ValueError("a seed stands twice; the same seed gives the same run again, so give each once")
     starts = named_start(start, observer.form.coordinates)
-    if clash := sorted(name for name in starts if f"start_{name}" in (over or {})):
+    if clash := sorted(name for name in starts if f"start_{name}" in over):
         raise ValueError(f"over varies start_{clash[0]}, and start gives {clash[0]} as well; give one of the two")
     positive(step=step, duration=duration)
     steps = duration / min(step, camera.period)
     limit(steps, "steps", "take longer steps or a shorter time")
-    grid = grid_of(over or {}, several, names)
+    grid = grid_of(over, several, names)
     runs = math.prod(grid.sizes.values())
-    limit(float(runs), "runs", "take fewer values or seeds", MOST_RUNS)
     if chunk < 1:
         raise ValueError(f"a chunk of {chunk} runs is none; take at least 1")
     plan = Plan(

@@ -82,7 +82,7 @@ def grid_of(over: Mapping[str, Any], seeds: Array, units: Mapping[str, str]) -> 
                 f"over goes {name!r} through values of shape {values.shape}; give finite numbers, a list of them or a "
                 "DataArray with named dimensions"
             )
-        if along == (name,):
+        if along == (name,) and len(np.unique(values)) < len(values):
             once(**{f"over {name}": values.tolist()})
         columns[name] = (along, values, {"units": units[name]})
     return xr.Dataset(coords=columns)

@@ -16,7 +16,7 @@ from percept_obs.recording import Recording
 from percept_obs.studies.comparison import Follow, relative_distance_errors
 from percept_obs.tracking.following import AnyObserver, StepTooLong
 from percept_obs.tracking.run import Run
-from percept_obs.validation import bar, checked, once, refuse_kind
+from percept_obs.validation import bar, checked, of_kind, once
 
 __all__ = ["Tuned", "best_setting", "tune_by_likelihood"]
 
@@ -98,7 +98,7 @@ def _followed(recordings: Sequence[Recording], observer: AnyObserver, follow: Fo
     """Runs of an observer; raise ValueError if they are of another one."""
     runs = [follow(recording, observer) for recording in recordings]
     for run in runs:
-        refuse_kind("follow", "its result", run, Run)
+        of_kind("follow", "its result", run, Run)
     chosen = {gain.name: gain.value for gain in getattr(observer, "gains", ()) if gain.given}
     if chosen and any(chosen.items() - {(gain.name, gain.value) for gain in run.observer.gains} for run in runs):
         raise ValueError("follow runs another observer than it is given; make it track(recording, observer)")

@@ -3,11 +3,10 @@
 from functools import cache
 
 import sympy as sp
-from numpy.typing import ArrayLike
 
 from percept_obs.system.motion import Motion, bound
 from percept_obs.system.state_view import StateView
-from percept_obs.validation import Coefficients, checked
+from percept_obs.validation import Coefficients, Times, checked
 
 X, Y, U, V = STATE = sp.symbols("X Y U V", real=True)
 y1, y2, y3, y4 = sp.symbols("y1:5", real=True)
@@ -15,7 +14,7 @@ ACCELERATION = sp.ImmutableMatrix(sp.symbols("a_x a_y", real=True))
 
 
 @checked
-def own_ship(acceleration: Coefficients | None = None, times: ArrayLike | None = None) -> Motion:
+def own_ship(acceleration: Coefficients | None = None, times: Times | None = None) -> Motion:
     """Return the motion of a target of constant velocity from a ship with a known acceleration.
 
     The state is place and velocity of the target from the ship: X' = U, Y' = V, U' = -a_x, V' = -a_y.

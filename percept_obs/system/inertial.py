@@ -3,11 +3,10 @@
 from functools import cache
 
 import sympy as sp
-from numpy.typing import ArrayLike
 
 from percept_obs.system.motion import Motion, bound, cross
 from percept_obs.system.state_view import StateView
-from percept_obs.validation import Coefficients, checked
+from percept_obs.validation import Coefficients, Times, checked
 
 w, a, p, v, g, b_w, b_a, u, q, c = (
     sp.ImmutableMatrix(sp.symbols(f"{name}1:4", real=True))
@@ -20,7 +19,7 @@ y1, y2, y3 = sp.symbols("y1:4", real=True)
 def imu(
     angular_velocity: Coefficients | None = None,
     specific_force: Coefficients | None = None,
-    times: ArrayLike | None = None,
+    times: Times | None = None,
 ) -> Motion:
     """Return the motion that an IMU knows: its angular velocity w in rad/s and specific force a in m/s^2.
 

@@ -19,6 +19,7 @@ from percept_obs.validation import (
     MOST_TERMS,
     Chain,
     Coefficients,
+    Times,
     are_numbers,
     checked,
     limit,
@@ -126,7 +127,7 @@ class Motion:
         """Values of `parameters` if they are constant, shape (1, p)."""
         return self.known(0.0) if self.signal is not None and self.signal.constant else None
 
-    def known(self, times: ArrayLike) -> Array:
+    def known(self, times: Times) -> Array:
         """Values of `parameters` at the given times, shape (T, p) or (1, p) when constant.
 
         It raises ValueError if the motion has symbols without numbers, or a time lies outside the known ones.
@@ -148,7 +149,7 @@ class Motion:
 
 
 @checked
-def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: ArrayLike | None = None) -> Motion:
+def affine(A: Coefficients | None = None, b: Coefficients | None = None, times: Times | None = None) -> Motion:
     """Return the affine motion X' = A X + b (Ma 2005, (1), p. 63); given numbers are the values of its symbols.
 
     Parameters
@@ -196,7 +197,7 @@ def rigid(
     camera_angular_velocity: Coefficients | None = None,
     camera_velocity: Coefficients | None = None,
     point_velocity: Coefficients | None = None,
-    times: ArrayLike | None = None,
+    times: Times | None = None,
     chwa_rotation: Coefficients | None = None,
 ) -> Motion:
     """Return the rigid motion X' = -w_c x X - v_c + v_p of a point seen by a camera, with all in the camera's axes.
@@ -266,7 +267,7 @@ def linear(
     A: Coefficients | None = None,
     v: Coefficients | None = None,
     states: int | None = None,
-    times: ArrayLike | None = None,
+    times: Times | None = None,
 ) -> Motion:
     """Return the linear motion x' = A(t) x + v(t) of a state with n entries (Inaba et al. 2005, (1)).
 
@@ -326,7 +327,7 @@ def linear(
 
 
 def bound(
-    name: str, A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, coefficients: list[Coefficient], times: ArrayLike | None
+    name: str, A: sp.ImmutableMatrix, b: sp.ImmutableMatrix, coefficients: list[Coefficient], times: Times | None
 ) -> Motion:
     """Motion with values for the symbols of A and b.
 
@@ -358,7 +359,7 @@ def bound(
         raise ValueError("the times of the motion are empty; give one for each sample, or leave times out")
     if times is not None and all(np.shape(value) == _shape(block) for value, block in coefficients):
         raise ValueError("times are those of samples, and the motion is constant; leave times out, or give arrays")
-    count = 1 if times is None else len(times)
+    count = 0 if times is None else len(times)
     motion = Motion(name, A, b, symbols, Signal(np.hstack([_rows(*each, count) for each in coefficients]), times))
     ask_for_degrees(motion, 0.0 if times is None else times)
     return motion
@@ -380,7 +381,7 @@ def coefficients(motion: Motion, known: Array) -> tuple[Array, Array]:
     return rows[:, :9].reshape(-1, 3, 3), rows[:, 9:]
 
 
-def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:
+def ask_for_degrees(motion: Motion, times: Times) -> None:
     """Warn of an angular velocity of three states, such as those of a point, that may be in degrees."""
     A = motion.A
     if A.shape[0] < 3 or motion.signal is None:
@@ -401,7 +402,7 @@ def ask_for_degrees(motion: Motion, times: ArrayLike) -> None:
 def _function(value: ArrayLike | Callable[[float], ArrayLike], block: sp.ImmutableMatrix) -> Callable[[Array], Array]:
     """One coefficient as a function of times, shape (T, entries); its values are checked once for all times."""
     if not callable(value):
-        return Chain(len, partial(np.repeat, _rows(value, block, 1), axis=0))
+        return Chain(len, partial(np.repeat, _rows(value, block), axis=0))
     try:
         signature(value).bind(0.0)
     except TypeError as error:
@@ -417,26 +418,26 @@ def _values(function: Callable[[float], ArrayLike], block: sp.ImmutableMatrix, t
         array = np.asarray(found, dtype=float)
         if array.shape == (len(times), *_shape(block)) and np.isfinite(array).all():
             return array.reshape(len(times), -1)
-    return np.concatenate([_rows(each, block, 1) for each in found])
+    return np.concatenate([_rows(each, block) for each in found])
 
 
 def _side_by_side(functions: Sequence[Callable[[Array], Array]], times: Array) -> Array:
     return np.hstack([rows(times) for rows in functions])
 
 
-def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int) -> Array:
-    """One coefficient as rows, shape (count, entries), repeated if it is constant."""
+def _rows(value: ArrayLike, block: sp.ImmutableMatrix, count: int = 0) -> Array:
+    """One coefficient as rows, shape (count, entries), repeated if it is constant; a constant alone without a count."""
     array = numbers(value, "a coefficient of the motion")
     shape = _shape(block)
-    if isinstance(value, sp.MatrixBase) and value.shape == block.shape:
+    if array.shape == block.shape:  # a column
         array = array.reshape(shape)
-    if array.shape not in (shape, (count, *shape)):
-        sampled = f" or {(count, *shape)}" if count > 1 else "; samples need times=" if array.shape[1:] == shape else ""
+    if array.shape not in (shape, (count, *shape) if count else shape):
+        sampled = f" or {(count, *shape)}" if count else "; samples need times=" if array.shape[1:] == shape else ""
         raise ValueError(f"{_title(block)} has shape {array.shape}; expected {shape}{sampled}")
     if not np.isfinite(array).all():
         raise ValueError(f"{_title(block)} is not finite; remove or repair the NaN or infinite entries")
     rows = array.reshape(-1, len(block))
-    return rows if len(rows) == count else np.repeat(rows, count, axis=0)
+    return np.repeat(rows, count, axis=0) if len(rows) < count else rows
 
 
 def _title(block: sp.ImmutableMatrix) -> str:

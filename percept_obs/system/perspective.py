@@ -39,7 +39,7 @@ class PerspectiveSystem:
     Raises
     ------
     ValueError
-        If the motion is not that of one point in space.
+        If the motion is not that of one point in space, or has a letter of the surface's.
 
     See Also
     --------
@@ -67,6 +67,12 @@ class PerspectiveSystem:
             raise ValueError(
                 f"the motion has {states} states, but an imaging surface sees a point, which has {len(POINT)}; pass "
                 "affine() or rigid(), or see several points of one state with PointsForm(motion, C)"
+            )
+        own = {symbol.name for symbol in (*self.surface.coordinates, *POINT, *self.surface.parameters)}
+        if taken := sorted(own & {symbol.name for symbol in self.motion.parameters}):
+            raise ValueError(
+                f"the motion has the letter {', '.join(taken)}, which is a coordinate or a number of the "
+                f"{self.surface.name} surface; give it another"
             )
 
     @property

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags
-from percept_obs.validation import Chain, checked, numbers, set_fields
+from percept_obs.validation import TIMES, Chain, Times, checked, numbers, set_fields
 
 
 def slack_of(times: Array) -> float:
@@ -31,7 +32,7 @@ class Signal:
     """
 
     samples: Array | Callable[[float], ArrayLike]
-    times: Array | None = None
+    times: Annotated[Array, TIMES] | None = None
 
     def __post_init__(self) -> None:
         if callable(self.samples):
@@ -69,7 +70,7 @@ class Signal:
         breaks = getattr(self.samples, "breaks", None)
         return breaks(until) if breaks else ()
 
-    def at(self, times: ArrayLike) -> Array:
+    def at(self, times: Times) -> Array:
         """Return the values at times in seconds, shape (T, n), or (1, n) if constant; refuse times outside."""
         times = np.atleast_1d(np.asarray(times, dtype=float))
         if callable(self.samples):

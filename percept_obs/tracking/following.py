@@ -25,7 +25,7 @@ from percept_obs.system.view import refuse_several
 from percept_obs.tracking.grid import Hold, TimeGrid, known_signals, time_grid
 from percept_obs.tracking.run import Run
 from percept_obs.tracking.smoothing import Belief, doubts_of, once_observable
-from percept_obs.validation import Kind, checked, limit, numbers, positive, refuse_kind, require_definite, warn
+from percept_obs.validation import Kind, checked, limit, numbers, of_kind, positive, require_definite, warn
 
 Start = Mapping[str, float] | Sequence[float] | None
 
@@ -140,8 +140,6 @@ def track(
     >>> track(record(scenarios.ma2005_eq35(), 20), ibo(form)).settling_time() < 5
     True
     """
-    if hold not in ("zero", "first", "exact"):
-        raise ValueError(f"the hold {hold!r} is none of 'zero', 'first' and 'exact'")
     if hold == "exact" and recording.signal is None:
         raise DoesNotFit("the exact signal between samples is known in simulations only; hold them 'zero' or 'first'")
     positive(step=step)
@@ -367,7 +365,7 @@ def named_start(start: Start, coordinates: Symbols) -> dict[str, float]:
     """Estimates at the start by the names of their coordinates."""
     if start is None:
         return {}
-    refuse_kind("track", "start", start, Start)
+    start = of_kind("track", "start", start, Start)
     names = [symbol.name for symbol in coordinates]
     if isinstance(start, Mapping):
         if unknown := sorted(set(start) - set(names)):

@@ -5,10 +5,11 @@ from __future__ import annotations
 import inspect
 import reprlib
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import is_dataclass
 from functools import cache, wraps
 from numbers import Real
+from operator import is_
 from types import FunctionType, MappingProxyType, NoneType
 from typing import Any, TypeVar, get_type_hints
 
@@ -16,20 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percept_obs.validation.environment import load_pandas
-from percept_obs.validation.kinds import FLOAT, NDARRAY, Kind, are_numbers, is_real, kind_of, with_article
+from percept_obs.validation.kinds import Kind, kind_of, with_article
+from percept_obs.validation.plain import are_numbers, plain, unit_of
 from percept_obs.validation.travel import travels
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
 
 PACKAGE = __name__.partition(".")[0]
-
-CHANGED = MappingProxyType(
-    {
-        "rigid": "; write rigid(camera_angular_velocity=w_c, ...) with w_c as the camera turns, which is minus what "
-        "angular_velocity was"
-    }
-)
-"""What else to say of a call that fits no longer."""
 
 LATER = MappingProxyType({"pd": load_pandas})
 """Modules that annotations name, loaded when a function that needs them is called."""
@@ -56,7 +50,7 @@ def checked(thing: Thing) -> Thing:
     """Check the arguments of a function, or of a class's public methods, against their annotations.
 
     A call with another kind raises `WrongKind`, which names the argument, what came, what was expected and, for the
-    usual slips, what to write instead.  Numbers of sympy and fractions become floats where floats are expected.
+    usual slips, what to write instead.  What means the kind becomes one: see `percept_obs.validation.plain`.
     """
     if not isinstance(thing, type):
         return _guarded(thing, thing.__qualname__.removesuffix(".__init__"), thing)
@@ -93,15 +87,14 @@ def _guarded(function: Any, name: str, annotated: Any) -> Any:
             return function(*args, **kwargs)
         signature, kinds, by_type = expected()
         bound = _bound(name, signature, args, kwargs)
-        for key, value, shown in _values(bound, kinds):
-            if not kinds[key].fits(value):
-                raise WrongKind(_message(name, shown, value, kinds[key], signature.parameters[key]))
-        for key in kinds.keys() & bound.arguments.keys():
-            if _is_meant_as_float(bound.arguments[key], kinds[key]):
-                bound.arguments[key] = float(bound.arguments[key])
-            elif isinstance(bound.arguments[key], list | tuple) and NDARRAY in (kinds[key], *kinds[key].alternatives):
-                bound.arguments[key] = np.asarray(bound.arguments[key])
-        if all(isinstance(each, str) or _decides(each, by_type) for each in types):
+        found = {
+            key: _taken(name, kinds[key], signature.parameters[key], value)
+            for key, value in bound.arguments.items()
+            if key in kinds
+        }
+        as_given = all(value is bound.arguments[key] for key, value in found.items())
+        bound.arguments |= found
+        if as_given and all(isinstance(each, str) or _decides(each, by_type) for each in types):
             passed.add(types)
         return function(*bound.args, **bound.kwargs)
 
@@ -115,41 +108,41 @@ def _bound(
         return signature.bind(*args, **kwargs)
     except TypeError as error:
         takes = [str(p.replace(annotation=p.empty)) for p in signature.parameters.values() if p.name != "self"]
-        raise WrongKind(f"{name}(): {error}; it takes {name}({', '.join(takes)}){CHANGED.get(name, '')}") from None
+        raise WrongKind(f"{name}(): {error}; it takes {name}({', '.join(takes)})") from None
 
 
-def _values(bound: inspect.BoundArguments, kinds: dict[str, Kind]) -> Iterator[tuple[str, Any, str]]:
-    """Parameter, value and name in messages of every argument that has a kind."""
-    for key, value in bound.arguments.items():
-        place = bound.signature.parameters[key].kind
-        if key not in kinds:
-            continue
-        if place is place.VAR_KEYWORD:
-            yield from ((key, each, name) for name, each in value.items())
-        else:
-            yield from ((key, each, key) for each in (value if place is place.VAR_POSITIONAL else [value]))
+def _taken(function: str, kind: Kind, parameter: inspect.Parameter, value: Any) -> Any:
+    """Argument as the function takes it, the same one if it is so already; `WrongKind` if it is none."""
+    if parameter.kind is parameter.VAR_KEYWORD:
+        found: Any = {name: _made(function, name, each, kind, parameter) for name, each in value.items()}
+        return value if all(map(is_, found.values(), value.values())) else found
+    if parameter.kind is parameter.VAR_POSITIONAL:
+        found = tuple(_made(function, parameter.name, each, kind, parameter) for each in value)
+        return value if all(map(is_, found, value)) else found
+    return _made(function, parameter.name, value, kind, parameter)
 
 
-def _is_meant_as_float(value: Any, kind: Kind) -> bool:
-    """Return True if a number stands for a float, rather than for itself in a formula or an array."""
-    if isinstance(value, int | float | np.number) or not is_real(value):
-        return False
-    alternatives = kind.alternatives or (kind,)
-    return FLOAT in alternatives and not any(each.fits(value) for each in alternatives if each is not FLOAT)
+def _made(function: str, name: str, value: Any, kind: Kind, parameter: inspect.Parameter | None = None) -> Any:
+    found = kind.made(value)
+    if not kind.fits(found):
+        raise WrongKind(_message(function, name, value, kind, parameter))
+    return found
 
 
 def _type_of(value: Any) -> Any:
-    """Type of a value, or of an array's entries; an array of one number stands for it, and NaN is none of its type."""
+    """Type of a value, or of an array's entries, with its dimensions; NaN is none of its type."""
     if isinstance(value, float) and value != value:
         return object
-    return value.dtype if type(value) is np.ndarray and value.ndim else type(value)
+    return (value.dtype, value.ndim) if type(value) is np.ndarray and value.ndim else type(value)
 
 
 def _decides(kind: Any, by_type: bool) -> bool:
     """Return True if all values of a type are of the same kind, so that one of them is checked."""
-    if isinstance(kind, np.dtype):
-        return kind.kind in "biuf" and by_type
-    return kind in (float, np.float64, bool, str, NoneType) or kind.__module__.partition(".")[0] == PACKAGE
+    if isinstance(kind, tuple):
+        return kind[0].kind in "biuf" and by_type
+    if kind is str:
+        return by_type
+    return kind in (float, np.float64, bool, NoneType) or kind.__module__.partition(".")[0] == PACKAGE
 
 
 def _message(function: str, argument: str, value: Any, kind: Kind, parameter: inspect.Parameter | None = None) -> str:
@@ -161,16 +154,16 @@ def _message(function: str, argument: str, value: Any, kind: Kind, parameter: in
     elif isinstance(value, FunctionType) or hasattr(value, "__signature__"):
         needed = [p.name for p in inspect.signature(value).parameters.values() if p.default is p.empty and p.kind < 2]
         remedy = f"call it: {value.__name__}({', '.join(needed)})"
+    elif unit_of(value) is not None:
+        remedy = "pass numbers, in seconds, metres and radians"
     elif any(entry.fits(value) for entry in kind.entries):
         remedy = "put it into a list"
     return f"{function}(): {argument} is {described(value)}; expected {kind.label}" + (remedy and f": {remedy}")
 
 
-def refuse_kind(function: str, argument: str, value: Any, annotation: Any) -> None:
-    """Raise `WrongKind` if a value does not fit an annotation, where no signature has it."""
-    kind = kind_of(annotation)
-    if not kind.fits(value):
-        raise WrongKind(_message(function, argument, value, kind))
+def of_kind(function: str, argument: str, value: Any, annotation: Any) -> Any:
+    """Return a value as an annotation has it, where no signature does; raise `WrongKind` if it does not fit."""
+    return _made(function, argument, value, kind_of(annotation))
 
 
 def numbers(value: Any, name: str, *shape: int | str) -> NDArray[np.float64]:
@@ -178,9 +171,10 @@ def numbers(value: Any, name: str, *shape: int | str) -> NDArray[np.float64]:
 
     Text is not read, and nothing is dropped: `WrongKind` for anything else, ValueError for another shape.
     """
-    if not (isinstance(value, np.ndarray) and value.dtype == np.float64) and not are_numbers(value):
+    found = value if type(value) is np.ndarray else plain(value)
+    if not are_numbers(found):
         raise WrongKind(f"{name} is {described(value)}; expected real numbers")
-    array = np.asarray(value, dtype=float)
+    array = np.asarray(found, dtype=float)
     last = array.shape[-len(shape) :] if shape else ()
     if len(last) != len(shape) or any(isinstance(s, int) and s != found for s, found in zip(shape, last, strict=True)):
         wanted = ", ".join(map(str, ("...", *shape)))
@@ -198,6 +192,8 @@ def described(value: Any) -> str:
         return f"the complex number {value}"
     if isinstance(value, Real):
         return f"the number {value}"
+    if (unit := unit_of(value)) is not None:
+        return f"a quantity in {unit or 'no unit'}"
     if isinstance(value, np.ndarray):
         return f"an array of shape {value.shape} and type {value.dtype}"
     if isinstance(value, list | tuple | dict | set | bytes):

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cache
-from numbers import Integral, Real
+from numbers import Integral
 from types import FunctionType, MappingProxyType, MethodType, NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -16,9 +15,7 @@ import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.validation.limits import limit_range
-
-LARGEST_FLOAT = 10**308
-"""Integers and fractions from here on do not become floats."""
+from percept_obs.validation.plain import are_numbers, columns, is_real, is_table, listed, plain, single, unit_of
 
 EXAMPLES = MappingProxyType(
     {
@@ -62,30 +59,41 @@ class Kind:
     example: str = ""  # code that makes such a value
     by_type: bool = False  # whether the type of a value, or of an array's entries, decides
     entries: tuple[Kind, ...] = ()  # kinds of a sequence's entries
-    alternatives: tuple[Kind, ...] = ()  # kinds of a union's members
+    made: Callable[[Any], Any] = lambda value: value  # a value as the function takes it, of what means one
 
 
-def are_numbers(value: Any) -> bool:
-    """Return True if numpy makes an array of real numbers of a value without reading text or dropping anything."""
-    if isinstance(value, str | bytes | Mapping | np.ma.MaskedArray) or callable(value):
-        return False
-    limit_range(value)
-    try:
-        array = np.asarray(value)
-    except (ValueError, TypeError):  # ragged
-        return False
-    return array.dtype.kind in "biuf" or (array.dtype.kind == "O" and all(map(is_real, array.ravel())))
+def _array(value: Any) -> Any:
+    return value if is_real(value) else plain(value)
 
 
-def is_real(value: Any) -> bool:
-    """Return True for a real number of Python, numpy or sympy, but not for True and False."""
-    if isinstance(value, np.ndarray):
-        return not value.ndim and value.dtype.kind in "iuf"
-    if isinstance(value, sp.Expr):
-        return bool(value.is_number and value.is_extended_real)
-    if isinstance(value, bool) or not isinstance(value, Real):
-        return False
-    return not isinstance(value, int | Fraction) or bool(-LARGEST_FLOAT < value < LARGEST_FLOAT)
+def _column(value: Any) -> Any:
+    """Numbers in a row, where a column of them came."""
+    found = _array(value)
+    return found.ravel() if np.ndim(found) == 2 and found.shape[1] == 1 else found
+
+
+def _table(value: Any) -> Any:
+    """Columns by their names, or an array."""
+    found = columns(value) if is_table(value) else None
+    return plain(value) if found is None else {name: plain(column) for name, column in found.items()}
+
+
+def _float(value: Any) -> Any:
+    """Number as a float, but for those of Python and numpy, which stay."""
+    if isinstance(value, int | float | np.integer) and not isinstance(value, np.timedelta64):
+        return value
+    found = single(value)
+    return float(found) if is_real(found) else value
+
+
+def _integer(value: Any) -> Any:
+    found = value if isinstance(value, int) else single(value)
+    return int(found) if _is_integer(found) else value
+
+
+def _text(value: Any) -> Any:
+    """Name that a symbol stands for."""
+    return value.name if isinstance(value, sp.Symbol) else value
 
 
 def _is_expression(value: Any) -> bool:
@@ -93,6 +101,8 @@ def _is_expression(value: Any) -> bool:
 
 
 def _are_expressions(value: Any) -> bool:
+    if unit_of(value) is not None:
+        return False
     try:
         entries = np.array(value.tolist() if isinstance(value, sp.MatrixBase) else value, dtype=object).ravel()
     except (ValueError, TypeError):
@@ -101,7 +111,7 @@ def _are_expressions(value: Any) -> bool:
 
 
 def _is_integer(value: Any) -> bool:
-    return isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) < 2**63
+    return isinstance(value, Integral) and is_real(value) and abs(int(value)) < 2**63
 
 
 def takes(value: Any, count: int) -> bool:
@@ -121,20 +131,28 @@ Coefficients = Annotated[
     Kind(
         "an array of real numbers, a function of time, or an array of sympy expressions",
         lambda v: are_numbers(v) or callable(v) or _are_expressions(v),
+        made=lambda v: v if _are_expressions(v) else plain(v),
     ),
 ]
 """Coefficients of a motion."""
 
-FLOAT = Kind("a real number", lambda v: is_real(v) and v == v, by_type=True)
-ARRAY = Kind("an array of real numbers", are_numbers, by_type=True)
-NDARRAY = Kind("an array of real numbers", are_numbers, "np.array([0.0, 1.0])", True)  # lists become one
+ARRAY = Kind("an array of real numbers", are_numbers, "np.array([0.0, 1.0])", True, made=_array)
+TIMES = Kind("an array of times in seconds", are_numbers, "t - t[0]", True, made=_column)
+Times = Annotated[ArrayLike, TIMES]
+TABLE = Kind(
+    "an array of real numbers or a table", lambda v: are_numbers(v) or is_table(v), ARRAY.example, True, made=_table
+)
+
+FLOAT = Kind("a real number", lambda v: is_real(v) and v == v, by_type=True, made=_float)
+INTEGER = Kind("a whole number", _is_integer, by_type=True, made=_integer)
 NOTHING = Kind("None", lambda v: v is None, by_type=True)
 _KINDS: Mapping[Any, Kind] = {
     float: FLOAT,
-    int: Kind("a whole number", _is_integer, by_type=True),
+    int: INTEGER,
     bool: Kind("True or False", lambda v: isinstance(v, bool | np.bool_), by_type=True),
-    str: Kind("text", lambda v: isinstance(v, str), by_type=True),
+    str: Kind("text", lambda v: isinstance(v, str), by_type=True, made=_text),
     ArrayLike: ARRAY,
+    NDArray[np.bool_]: Kind("an array of True and False", lambda v: np.asarray(v).dtype == bool, by_type=True),
     sp.Expr: Kind("a real number or a sympy expression", _is_expression, by_type=True),
     sp.ImmutableMatrix: Kind("a sympy matrix", lambda v: isinstance(v, sp.MatrixBase), by_type=True),
     NoneType: NOTHING,
@@ -149,12 +167,12 @@ def kind_of(annotation: Any) -> Kind:
     if origin is Annotated:
         return next(each for each in annotation.__metadata__ if isinstance(each, Kind))
     if annotation in _KINDS or origin in _ARRAYS:
-        return _KINDS.get(annotation, NDARRAY)
+        return _KINDS.get(annotation, ARRAY)
     if origin in (Union, UnionType):
         return _union(inside)
     if origin is Literal:
         names = ", ".join(map(repr, inside))
-        return Kind(f"one of {names}", lambda v: isinstance(v, type(inside[0])) and not isinstance(v, bool), "", True)
+        return Kind(f"one of {names}", lambda v: isinstance(v, str) and v in inside)
     if origin is Callable and inside[0] is not Ellipsis:
         count = len(inside[0])
         label = f"a function of {count} argument{'s' * (count != 1)}"
@@ -173,21 +191,38 @@ def _union(inside: tuple[Any, ...]) -> Kind:
     if arrays and arrays <= set(inside):  # members of ArrayLike, which also admit complex numbers and text
         inside = (ArrayLike, *(each for each in inside if each not in arrays))
     kinds = tuple(map(kind_of, inside))
+    in_turn = sorted(kinds, key=lambda kind: kind is FLOAT)  # an exact number stays one where this is asked for
+
+    def fits(value: Any) -> bool:
+        return any(kind.fits(value) for kind in kinds)
+
+    def made(value: Any) -> Any:
+        given = listed(value) if isinstance(value, Iterator) and not fits(value) else value
+        found = (kind.made(given) for kind in [kind for kind in in_turn if kind.fits(given)] or in_turn)
+        return next(filter(fits, found), value)
+
     return Kind(
         " or ".join(dict.fromkeys(kind.label for kind in kinds if kind is not NOTHING)),
-        lambda v: any(kind.fits(v) for kind in kinds),
+        fits,
         next((kind.example for kind in kinds if kind.example), ""),
         all(kind.by_type for kind in kinds),
         tuple(entry for kind in kinds for entry in kind.entries),
-        kinds,
+        made,
     )
 
 
 def _mapping(key: Kind, entry: Kind) -> Kind:
     def fits(value: Any) -> bool:
-        return isinstance(value, Mapping) and all(key.fits(k) and entry.fits(v) for k, v in value.items())
+        found = columns(value)
+        return found is not None and all(key.fits(k) and entry.fits(v) for k, v in found.items())
 
-    return Kind(f"a mapping from {key.label} to {entry.label}", fits, entry.example)
+    def made(value: Any) -> Any:
+        if isinstance(value, Mapping) and fits(value):
+            return value
+        found = columns(value)
+        return value if found is None else {key.made(k): entry.made(v) for k, v in found.items()}
+
+    return Kind(f"a mapping from {key.label} to {entry.label}", fits, entry.example, made=made)
 
 
 def _sequence(origin: type, inside: tuple[Any, ...]) -> Kind:
@@ -210,8 +245,16 @@ def _sequence(origin: type, inside: tuple[Any, ...]) -> Kind:
             return len(each) == len(inside) and all(kind_of(a).fits(e) for a, e in zip(inside, each, strict=True))
         return all(map(entry.fits, value))
 
+    def made(value: Any) -> Any:
+        if fits(value):
+            return value
+        if of_floats:
+            return _column(value)
+        found = value if isinstance(value, np.ndarray) and not value.ndim else listed(value)
+        return [entry.made(each) for each in found] if isinstance(found, list) else value
+
     size = f" of {len(inside)}" if origin is tuple and inside[-1] is not Ellipsis else ""
-    return Kind(f"a sequence{size}, each entry {entry.label}", fits, entry.example, entries=(entry,))
+    return Kind(f"a sequence{size}, each entry {entry.label}", fits, entry.example, entries=(entry,), made=made)
 
 
 def _instance(cls: Any) -> Kind:

@@ -89,7 +89,7 @@ def outside(kind, value):
             yield changed, reason
 
 
-ALIEN = (object(), 1j, b"1", {1, 2}, {1: 2}, range(3), sp.Symbol("x"))
+ALIEN = (object(), 1j, b"1", {1, 2}, {1: 2}, sp.Symbol("x"))
 """Values that no setting takes."""
 
 

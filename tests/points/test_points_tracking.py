@@ -274,7 +274,7 @@ def test_seeds_repeat(seed):
         ({"start": [0.0]}, "start has 1 values; expected 6: X1_x"),
         ({"start": [np.nan] * 6}, "6 finite numbers"),
         ({"step": np.inf}, "positive and finite"),
-        ({"hold": "second"}, "none of 'zero', 'first' and 'exact'"),
+        ({"hold": "second"}, "one of 'zero', 'first', 'exact'"),
         ({"language": "fortran"}, "neither 'python' nor 'numba'"),
     ],
 )

@@ -33,18 +33,6 @@ def make(**changes):
     return Recording(**(settings | changes))
 
 
-def test_a_table_of_pandas_is_taken_in_its_order_only():
-    import pandas as pd
-
-    table = pd.DataFrame(OUTPUTS, columns=["y1", "y2"])
-    np.testing.assert_array_equal(make(outputs=table).outputs, OUTPUTS)
-    np.testing.assert_array_equal(make(outputs=pd.DataFrame(OUTPUTS)).outputs, OUTPUTS)
-    with pytest.raises(ValueError, match=r"outputs is a table with the columns y2, y1, but y1, y2 are expected"):
-        make(outputs=table[["y2", "y1"]])
-    with pytest.raises(ValueError, match="truth is a table with the columns y1, y2, but y1, y2, y3 are expected"):
-        make(truth=table)
-
-
 def test_the_truth_is_the_matrix_exponential():
     scenario = scenarios.ma2005_eq35()
     values = list(scenario.motion.values.values())
@@ -84,12 +72,6 @@ def test_the_numbers_are_those_of_the_reference_mersenne_twister():
     """Matsumoto and Nishimura 1998: init_genrand(5489) begins with these 32-bit integers."""
     first, second = 3499211612, 581869302
     assert seeded(5489).random() == ((first >> 5) * 2**26 + (second >> 6)) / 2**53
-
-
-@pytest.mark.parametrize("seed", [-1, 1.5, "x", True, 2**32, None])
-def test_a_seed_that_is_none_is_refused(seed):
-    with pytest.raises(ValueError, match=r"seed .*whole number"):
-        record(scenarios.ma2005_eq35(), 1, NOISY, seed=seed)
 
 
 def test_lost_samples_are_missing_and_the_first_is_not():

@@ -162,7 +162,7 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: replace(scenarios.planar(), motion=affine()), "has no values for a11"),
     (lambda: replace(scenarios.planar(), motion=scenarios.own_ship_turns().motion), "a point has X, Y, Z"),
     (lambda: replace(scenarios.own_ship_turns(), motion=SAMPLED), "is none of bearing alone"),
-    (lambda: Poses([0, 1e12], POSES.position, POSES.orientation).path(), "give seconds, or cut"),
+    (lambda: Poses([0, 1e10], POSES.position, POSES.orientation).path(), "give seconds, or cut"),
     (lambda: read_folder(worked_folder(), rate=-5), "rate is -5"),
     (lambda: write_tracks(worked_folder(), [SEEN]), "is a folder"),
     (lambda: write_tracks("w.csv", [SEEN, record(scenarios.ma2005_eq35(sphere()), 1)]), "write two files"),
@@ -236,9 +236,14 @@ def test_the_content_of_a_file_is_no_path_to_it():
         (lambda _: PixelCamera((500, 500), (3200, 2400), (640, 480)), "are both of one size"),
         (lambda _: PixelCamera((0.004, 0.004), (320, 240)), "are these pixels"),
         (lambda _: POSES.mounted([0, 0, 65], [0, 0, 0, 1]), "in millimetres"),
-        (lambda _: Poses(50.0 * np.arange(6), np.zeros((6, 3)), [[0, 0, 0, 1]] * 6), "are its times seconds"),
+        (lambda _: Poses(50.0 * np.arange(6), np.zeros((6, 3)), [[0, 0, 0, 1]] * 6), "its times seconds"),
         (lambda file: Recording.from_csv(file, SEEN.motion, camera=WORKED_CAMERA), "in its corner"),
         (read_imu, "at rest it is 9.8"),
+        (lambda _: Camera(30), "for 30 pictures a second, Camera.1/30"),
+        (
+            lambda _: replace(SEEN, time=1e9 * SEEN.time, motion=rigid(camera_velocity=(0, 0, 1))),
+            "are its times seconds",
+        ),
     ],
 )
 def test_what_is_hardly_meant_is_suspicious(call, said, tmp_path):

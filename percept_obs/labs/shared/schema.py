@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from percept_obs.observers import Observer
+from percept_obs.validation import plain
 
 Settings = dict[str, Any]
 
@@ -40,7 +41,8 @@ class Kind:
 
     def read(self, name: str, value: object) -> Any:
         """The value as plain data, or a ValueError that says what is expected of the setting with this name."""
-        value = value.tolist() if isinstance(value, np.ndarray) and value.ndim else value
+        value = value if isinstance(value, list | tuple) else plain(value)  # None in a list is a choice
+        value = value.tolist() if isinstance(value, np.ndarray | np.generic) else value
         if not self._allows(value):
             raise ValueError(f"{name} is {reprlib.repr(value)}; it must be {self.expected}")
         return self._read(name, value)
