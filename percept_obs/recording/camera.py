@@ -14,7 +14,7 @@ from percept_obs.compile import Array, Flags
 from percept_obs.recording.plausibility import Unlikely
 from percept_obs.system.motion import Motion
 from percept_obs.system.view import View
-from percept_obs.validation import INTEGER, Kind, Times, checked, limit, warn
+from percept_obs.validation import INTEGER, Kind, Times, checked, columns, limit, warn
 
 TOO_SHORT = "a duration of {duration} s holds no two samples {period} s apart; record longer"
 """Reason why a recording of one sample is refused, here and in live labs."""
@@ -272,7 +272,8 @@ class Scene(ABC):
 
     def _check(self, what: str, values: Sequence[float], names: Sequence[str]) -> tuple[float, ...]:
         """Return the scene's initial values as floats; refuse infinite ones and a duration <= 0."""
-        array = np.asarray(values, dtype=float)
+        labels = columns(values) or {}
+        array = np.asarray([labels[name] for name in names] if set(labels) == set(names) else values, dtype=float)
         if array.shape != (len(names),) or not np.isfinite(array).all():
             raise ValueError(
                 f"the {what} of {self.name!r} has shape {array.shape}; expected {len(names)} finite numbers: "
@@ -308,6 +309,7 @@ def seeded(seed: Seed) -> np.random.Generator:
     >>> seeded(1).random(2).round(3).tolist()
     [0.417, 0.72]
     """
+    assert seed is not None  # one was drawn
     return seed if isinstance(seed, np.random.Generator) else next(_generators([seed]))
 
 

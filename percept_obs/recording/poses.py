@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +17,7 @@ from percept_obs.recording.pose_errors import PoseErrors
 from percept_obs.recording.smoother import FEWEST, Smoothed, smooth, smooth_turns
 from percept_obs.system.motion import Motion, rigid
 from percept_obs.system.signal import readonly
-from percept_obs.validation import TIMES, Times, checked, limit, numbers, warn
+from percept_obs.validation import TABLE, TIMES, Times, checked, limit, numbers, warn
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -46,7 +48,8 @@ class Poses:
     position : array of shape (K, 3)
         Places p in metres.
     orientation : array of shape (K, 4) or (K, 3, 3)
-        R as quaternions (x, y, z, w) of length 1, or as matrices; kept as quaternions.
+        R as quaternions (x, y, z, w) of length 1, as matrices, or as scipy's Rotation; kept as quaternions.  A table
+        is taken by the last letters of its columns' names, such as qw.
     sigma : pair of float
         Standard deviations of a position's coordinates in metres and of a rotation's angles in radians, at least;
         larger ones are found from the poses.
@@ -77,16 +80,16 @@ class Poses:
     """
 
     time: Annotated[Array, TIMES]
-    position: Array
-    orientation: Array
+    position: Annotated[Array, TABLE]
+    orientation: Annotated[Array, TABLE]
     sigma: tuple[float, float] = (0.0, 0.0)
     correlated: float = 0.0
     mount: tuple[Array, Array] | None = None
 
     def __post_init__(self) -> None:
-        time, position, turns = (
-            numbers(getattr(self, name), f"the poses' {name}") for name in ("time", "position", "orientation")
-        )
+        time = numbers(self.time, "the poses' time")
+        position = numbers(_by_axes(self.position, "xyz"), "the poses' position")
+        turns = numbers(_by_axes(self.orientation, "xyzw"), "the poses' orientation")
         known = numbers([*self.sigma, self.correlated], "sigma and correlated")
         if known.shape != (3,) or not (np.isfinite(known) & (known >= 0)).all():
             raise ValueError(
@@ -339,8 +342,8 @@ class CameraPath:
 @checked
 def rigid_from_poses(
     times: Times,
-    positions: ArrayLike,
-    orientations: ArrayLike,
+    positions: Annotated[ArrayLike, TABLE],
+    orientations: Annotated[ArrayLike, TABLE],
     frame: Literal["world", "camera"] = "world",
     sigma: tuple[float, float] = (0.0, 0.0),
     correlated: float = 0.0,
@@ -388,12 +391,19 @@ def rigid_from_poses(
     >>> motion.known([0.5]).round(9)[0, [0, 3]].tolist()
     [0.1, 0.2]
     """
-    time, position, turns = numbers(times, "the times"), numbers(positions, "the positions"), orientations
-    poses = Poses(time, position, numbers(turns, "the orientations"), sigma, correlated)
+    poses = Poses(times, positions, orientations, sigma, correlated)  # type: ignore[arg-type]
     if frame == "camera":
         back = poses.rotation.inv()
         poses = replace(poses, position=-back.apply(poses.position.copy()), orientation=back.as_quat())
     return poses.motion()
+
+
+def _by_axes(table: Any, axes: str) -> Any:
+    """Columns of a table in the order of the axes that their names end with, such as qw; no table as it is."""
+    if not isinstance(table, Mapping):
+        return table
+    found = {re.sub(r"\W+$", "", name)[-1:].lower(): column for name, column in table.items()}
+    return np.stack([found[axis] for axis in axes] if set(found) == set(axes) else [*table.values()], axis=-1)
 
 
 def _quaternions(turns: Array) -> Array:

@@ -63,13 +63,13 @@ class Kind:
 
 
 def _array(value: Any) -> Any:
-    return value if is_real(value) else plain(value)
+    return value if isinstance(value, int | float) else plain(value)
 
 
 def _column(value: Any) -> Any:
-    """Numbers in a row, where a column of them came."""
+    """Numbers one after another, where a column of them came."""
     found = _array(value)
-    return found.ravel() if np.ndim(found) == 2 and found.shape[1] == 1 else found
+    return found.ravel() if isinstance(found, np.ndarray) and found.shape[1:] == (1,) else found
 
 
 def _table(value: Any) -> Any:
@@ -87,8 +87,9 @@ def _float(value: Any) -> Any:
 
 
 def _integer(value: Any) -> Any:
+    """Whole number as an int, also 3.0."""
     found = value if isinstance(value, int) else single(value)
-    return int(found) if _is_integer(found) else value
+    return int(found) if _is_integer(found) or (isinstance(found, float) and found.is_integer()) else value
 
 
 def _text(value: Any) -> Any:
@@ -248,10 +249,13 @@ def _sequence(origin: type, inside: tuple[Any, ...]) -> Kind:
     def made(value: Any) -> Any:
         if fits(value):
             return value
+        given = listed(value) if isinstance(value, Iterator) else value
+        found = plain(given)
         if of_floats:
-            return _column(value)
-        found = value if isinstance(value, np.ndarray) and not value.ndim else listed(value)
-        return [entry.made(each) for each in found] if isinstance(found, list) else value
+            row = isinstance(found, np.ndarray) and found.ndim == 2 and 1 in found.shape
+            return found.ravel() if row else found
+        each = found if isinstance(found, np.ndarray) else listed(given)
+        return [entry.made(e) for e in each] if isinstance(each, list | np.ndarray) else value
 
     size = f" of {len(inside)}" if origin is tuple and inside[-1] is not Ellipsis else ""
     return Kind(f"a sequence{size}, each entry {entry.label}", fits, entry.example, entries=(entry,), made=made)

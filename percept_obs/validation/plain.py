@@ -67,7 +67,7 @@ def plain(value: Any) -> Any:
     for method in ("as_quat", "to_numpy"):
         found = getattr(found, method)() if hasattr(found, method) else found
     try:
-        array = found if isinstance(found, np.ndarray) else np.asarray(found)
+        array: Any = found if isinstance(found, np.ndarray) else np.asarray(found)
         if array.dtype.kind == "O":
             entries = np.array(list(map(_number, array.flat)), dtype=float)
             array = entries.reshape(array.shape + entries.shape[1:])
@@ -78,7 +78,7 @@ def plain(value: Any) -> Any:
     if array.dtype.kind not in "iuf":
         return value
     if isinstance(array, np.ma.MaskedArray):
-        array = array.astype(float).filled(np.nan)
+        array = np.ma.filled(array.astype(float), np.nan)
     return np.asarray(array) if array.ndim else array[()]
 
 
@@ -125,6 +125,8 @@ def listed(value: Any) -> Any:
     """Return a list of what can be gone through in an order; anything else as it is."""
     if isinstance(value, str | bytes | Mapping | set | frozenset) or not isinstance(value, Iterable):
         return value
+    if isinstance(value, np.ndarray) and not value.ndim:
+        return value
     found = list(islice(value, MOST_LISTED + 1))
     limit(len(found), "entries one after another", "give an array, or fewer", MOST_LISTED)
     return found
@@ -143,5 +145,5 @@ def columns(value: Any) -> Mapping[Any, Any] | None:
 
 def is_table(value: Any) -> bool:
     """Return True for a table whose columns have names and are numbers."""
-    found = columns(value)
-    return found is not None and all(isinstance(n, str) and are_numbers(plain(column)) for n, column in found.items())
+    found = columns(value) or {}
+    return bool(found) and all(isinstance(n, str) and are_numbers(plain(column)) for n, column in found.items())

@@ -275,7 +275,7 @@ def test_seeds_repeat(seed):
         ({"start": [np.nan] * 6}, "6 finite numbers"),
         ({"step": np.inf}, "positive and finite"),
         ({"hold": "second"}, "one of 'zero', 'first', 'exact'"),
-        ({"language": "fortran"}, "neither 'python' nor 'numba'"),
+        ({"language": "fortran"}, "one of 'python', 'numba'"),
     ],
 )
 def test_what_makes_no_sense_is_refused(arguments, message):

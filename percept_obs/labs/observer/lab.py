@@ -44,7 +44,7 @@ from percept_obs.system.signal import OverTime, Signal
 from percept_obs.system.surfaces import BehindCamera, ImagingSurface
 from percept_obs.tracking.following import StepTooLong, track
 from percept_obs.tracking.run import Run
-from percept_obs.validation import TooMuchWork, checked
+from percept_obs.validation import TooMuchWork, checked, listed
 
 
 class ObserverLab(Lab):
@@ -102,7 +102,7 @@ class ObserverLab(Lab):
         **settings: Any,
     ) -> None:
         scenes = {name: make() for name, make in SCENARIOS.items()}
-        tracks = dict(recordings or {})
+        tracks, observers = dict(recordings or {}), listed(observers)
         films: dict[str, Frames] = {}
         if scenario is None:
             plain = not (set(settings) - set(self.looks) or tracks or observers or surface)
