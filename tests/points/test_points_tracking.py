@@ -274,8 +274,6 @@ def test_seeds_repeat(seed):
         ({"start": [0.0]}, "start has 1 values; expected 6: X1_x"),
         ({"start": [np.nan] * 6}, "6 finite numbers"),
         ({"step": np.inf}, "positive and finite"),
-        ({"hold": "second"}, "one of 'zero', 'first', 'exact'"),
-        ({"language": "fortran"}, "one of 'python', 'numba'"),
     ],
 )
 def test_what_makes_no_sense_is_refused(arguments, message):

@@ -79,8 +79,6 @@ def test_what_cannot_be_divided_is_refused(wandering):
     for moves_at in (0.0, 10.0, 20.0):
         with pytest.raises(ValueError, match="each stage needs two samples"):
             semigeneral(recording, setup.motion, moves_at)
-    with pytest.raises(ValueError, match="one of 'kept', 'given'"):
-        semigeneral(recording, setup.motion, 5.0, camera="free")
 
 
 def test_a_first_stage_without_a_scale_says_so():

@@ -130,7 +130,6 @@ test_what_makes_no_table_is_refused = refuses(
     (SEEN, {"after": (30.0,)}, "0 of 4 (?s:.*)the first error is asked for after 30 s"),
     (SEEN, {"after": ()}, "1 references and 0 times after"),
     (SEEN, {"after": (np.nan,)}, "after is .*finite and not negative"),
-    (SEEN, {"split": "at random"}, "split is the text 'at random'; expected one of"),
     (SEEN, {"references": ("sonar",)}, "it has no sonar to compare with"),
     (SEEN, {"choosing": SEEN[:1]}, "in both halves"),
     (SEEN[1:], {"choosing": [SEEN[0].between(0, 0.5)]}, "3 of 4 recordings can be used"),

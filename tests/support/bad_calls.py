@@ -272,7 +272,7 @@ def outcome(function, arguments, key, value):
     except BaseException as error:
         verdict = _judged(error, key, value)
     else:
-        unseen = function.__name__ in ("without", "read_stereo_mat", "image", "pixels")  # NaN is what a camera did not see
+        unseen = function.__name__ in ("without", "read_stereo_mat", "image", "pixels")  # NaN is what was not seen
         verdict = "NaN without a word" if _has_nan(found) and not unseen else "right"
         if verdict == "right" and any(value is alien for alien in ALIEN) and not _may_be_text(function, key, value):
             verdict = "accepted"

@@ -225,7 +225,6 @@ def test_the_claimed_covariance():
         (ibo(PerspectiveSystem(rigid(), pinhole()).measure("y1")), {}, DoesNotFit, "same kind of motion"),
         (ibo(ONE), {"believed": affine()}, ValueError, "no values for a11"),
         (ibo(ONE), {"believed": rigid(point_velocity=[0] * 3)}, DoesNotFit, "same kind of motion"),
-        (ibo(ONE), {"hold": "second"}, ValueError, "one of 'zero', 'first', 'exact'"),
         (ibo(ONE), {"step": 0.0}, ValueError, "must be positive"),
         (ibo(ONE), {"start": (0, 0)}, ValueError, "expected 3: y1, y2, y3"),
         (ibo(ONE), {"start": (0, 0, np.nan)}, ValueError, "no finite value for y3"),
