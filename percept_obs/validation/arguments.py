@@ -25,6 +25,14 @@ Thing = TypeVar("Thing", bound=Callable[..., Any])
 
 PACKAGE = __name__.partition(".")[0]
 
+CHANGED = MappingProxyType(
+    {
+        "rigid": "; write rigid(camera_angular_velocity=w_c, ...) with w_c as the camera turns, which is minus what "
+        "angular_velocity was"
+    }
+)
+"""What else to say of a call that fits no longer."""
+
 LATER = MappingProxyType({"pd": load_pandas})
 """Modules that annotations name, loaded when a function that needs them is called."""
 
@@ -108,7 +116,7 @@ def _bound(
         return signature.bind(*args, **kwargs)
     except TypeError as error:
         takes = [str(p.replace(annotation=p.empty)) for p in signature.parameters.values() if p.name != "self"]
-        raise WrongKind(f"{name}(): {error}; it takes {name}({', '.join(takes)})") from None
+        raise WrongKind(f"{name}(): {error}; it takes {name}({', '.join(takes)}){CHANGED.get(name, '')}") from None
 
 
 def _taken(function: str, kind: Kind, parameter: inspect.Parameter, value: Any) -> Any:
