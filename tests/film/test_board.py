@@ -166,7 +166,7 @@ def test_a_wrong_board_is_refused_with_a_sentence(make, sentence):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[7, 5]", '{"columns": 7}', '{"columns": 7, "square": "0.04"}', '{"colour": "red"}']
+    "text", ["[" * 100_000, "", "[7, 5]", '{"columns": 7}', '{"columns": 7, "square": "0.04"}', '{"colour": "red"}']
 )
 def test_a_file_of_something_else_is_no_board(tmp_path, text):
     file = tmp_path / "my board.json"
