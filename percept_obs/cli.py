@@ -158,7 +158,7 @@ def compare(options: argparse.Namespace) -> int:
     samples = options.seeds * options.duration / camera.period
     limit(samples * len(observers), "samples to follow", "take fewer --seeds or a shorter --duration")
     recordings = [record(scenario, options.duration, camera, seed) for seed in range(options.seeds)]
-    found = compare(recordings, observers, (0.0, 0.0, 0.0), after=options.duration / 4)
+    found = compare(recordings, observers, (0.0, 0.0, 0.0), 0.05, after=options.duration / 4, coordinates=["y3"])
     print(
         f"{scenario.name}, {options.outputs}, {options.seeds} seeds, uniform noise of +-{options.noise:g}, "
         f"{options.duration:g} s at 100 Hz, held; errors of 1/Z from {options.duration / 4:g} s on; "

@@ -188,15 +188,6 @@ def test_the_command_writes_the_page_and_the_numbers_and_says_what_to_do(tmp_pat
         assert [step[:2] for step in steps] == ["1.", "2.", "3."]
 
 
-def test_the_command_takes_numbers_in_millimetres(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    sizes = ["--columns", "9", "--rows", "6", "--square", "25.5", "--marker", "20"]
-    assert cli.main(["board", *sizes, "--paper", "letter"]) == 0
-    board = Board(9, 6, 0.0255, 0.02)
-    assert Board.from_json("board.json") == board
-    assert (tmp_path / "board.pdf").read_bytes() == board_pdf(board, "letter")
-
-
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
