@@ -1,4 +1,7 @@
-"""The command line: notebooks, pages, verdicts on equations, comparisons, and boards to print."""
+"""The command line: notebooks, pages, verdicts on equations, comparisons, and boards to print.
+
+The package is imported where it is used: while it is, `main` already answers Ctrl-C.
+"""
 
 import argparse
 import json
@@ -6,21 +9,21 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
+from concurrent.futures import BrokenExecutor
 from importlib import util
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from percept_obs.exercises import COPIES, GRADERS, individual
-from percept_obs.exercises.models import notebooks
-from percept_obs.validation import checked, to_write, write_whole
-
 FIRST_NOTEBOOK = "00_start.ipynb"
 
 
-@checked
 def copy_notebooks(directory: str | Path, readers: str = "students", student: str | None = None) -> None:
     """Copy the notebooks for their readers into a directory, which may be new, and leave whatever is there as it is."""
+    from percept_obs.exercises import COPIES, GRADERS, individual
+    from percept_obs.exercises.models import notebooks
+    from percept_obs.validation import write_whole
+
     if readers not in {**COPIES, **GRADERS}:
         raise ValueError(f"readers is {readers!r}; there are {', '.join((*COPIES, *GRADERS))}")
     shipped = {name: each if student is None else individual(each, student) for name, each in notebooks().items()}
@@ -66,6 +69,7 @@ def collect(options: argparse.Namespace) -> int:
     import pandas as pd
 
     from percept_obs.exercises.collecting import collect, filled_in
+    from percept_obs.validation import to_write, write_whole
 
     earlier: Any = None
     if to_write(options.output, ".csv", ".txt").exists():
@@ -83,6 +87,7 @@ def collect(options: argparse.Namespace) -> int:
 def exam(options: argparse.Namespace) -> int:
     """Write a version of the exam with other numbers, and its solutions for teachers, which are computed anew."""
     from percept_obs.site.exam import exam
+    from percept_obs.validation import write_whole
 
     if not options.seed.isalnum():
         raise _Mistake(f"{options.seed!r} cannot be part of a file's name; name a version with letters and digits")
@@ -97,6 +102,7 @@ def exam(options: argparse.Namespace) -> int:
 
 def site(options: argparse.Namespace) -> int:
     """Write the course as pages that need neither Python nor a network, with live labs, equations and reference."""
+    from percept_obs.exercises.models import notebooks
     from percept_obs.site import NEEDS, SiteFault, build, lite
     from percept_obs.validation import needed
 
@@ -115,6 +121,7 @@ def site(options: argparse.Namespace) -> int:
 def check(options: argparse.Namespace) -> int:
     """Print a verdict on each of the papers' equations, or on some, and how it is known."""
     from percept_obs.papers import find, judge, page, report
+    from percept_obs.validation import to_write, write_whole
 
     ledgers = find(options.places, options.paper)
     if options.html:
@@ -151,7 +158,7 @@ def compare(options: argparse.Namespace) -> int:
     samples = options.seeds * options.duration / camera.period
     limit(samples * len(observers), "samples to follow", "take fewer --seeds or a shorter --duration")
     recordings = [record(scenario, options.duration, camera, seed) for seed in range(options.seeds)]
-    found = compare(recordings, observers, (0.0, 0.0, 0.0), after=options.duration / 4)
+    found = compare(recordings, observers, (0.0, 0.0, 0.0), 0.05, after=options.duration / 4, coordinates=["y3"])
     print(
         f"{scenario.name}, {options.outputs}, {options.seeds} seeds, uniform noise of +-{options.noise:g}, "
         f"{options.duration:g} s at 100 Hz, held; errors of 1/Z from {options.duration / 4:g} s on; "
@@ -168,6 +175,7 @@ def film(options: argparse.Namespace) -> int:
     from percept_obs.film.page import page
     from percept_obs.labs import observer_lab
     from percept_obs.studies.all_observers import all_observers
+    from percept_obs.validation import write_whole
 
     board = (Board.from_json(options.board) if options.board else Board()).printed(options.ruler)
     directory = options.directory or options.file.with_name(f"{options.file.stem}_distances")
@@ -179,8 +187,9 @@ def film(options: argparse.Namespace) -> int:
     print(table)
     found.overlay(directory / "film.mp4")
     observer_lab(found).save(directory / "lab.html")
-    found.distances().to_csv(directory / "distances.csv", index=False)
-    write_whole(directory / "index.html", page(found, table, "film.mp4", "lab.html").encode())
+    points = found.distances()
+    write_whole(directory / "distances.csv", points.to_csv(index=False).encode())
+    write_whole(directory / "index.html", page(found, points, table, "film.mp4", "lab.html").encode())
     print(f"open {directory / 'index.html'}")
     return 0
 
@@ -194,6 +203,7 @@ def board(options: argparse.Namespace) -> int:
     """Write a chessboard with markers to print and to film: board.pdf to true size, and its numbers, board.json."""
     from percept_obs.film import Board, board_pdf
     from percept_obs.film.printing import SHARE, largest_square
+    from percept_obs.validation import write_whole
 
     directory: Path = options.directory
     _refuse_a_file(directory)
@@ -223,9 +233,32 @@ class _Mistake(ValueError):
         self.code = code
 
 
-@checked
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command and return its exit code: 0 for success, 1 for a failure, 2 for a wrong request."""
+    """Run one command and return its exit code: 0, 1 for a failure, 2 for a wrong request, 130 after Ctrl-C."""
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="backslashreplace")  # a name may have letters that the terminal has not
+    try:
+        options = _asked(arguments)
+        return options.run(options)
+    except (ValueError, ModuleNotFoundError) as error:
+        print(f"percept-obs: {error}", file=sys.stderr)
+        return getattr(error, "code", 2)
+    except OSError as error:
+        said = f"cannot use {error.filename}: {error.strerror}" if error.strerror else error
+        print(f"percept-obs: {said}", file=sys.stderr)
+        return 2
+    except BrokenExecutor:
+        print("percept-obs: the system ended a process of this command, perhaps for want of memory", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("\npercept-obs: interrupted", file=sys.stderr)
+        return 130
+
+
+def _asked(arguments: Sequence[str] | None) -> argparse.Namespace:
+    """Return what a command line asks for; argparse ends the program where it is none."""
+    from percept_obs.exercises import COPIES, GRADERS
+
     parser = argparse.ArgumentParser(prog="percept-obs", description="Observers for perspective dynamic systems.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
@@ -305,18 +338,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add("--square", type=_positive(float), metavar="MM", help="side of a square (default: what fits on both papers)")
     add("--marker", type=_positive(float), metavar="MM", help="side of a marker (default: 3/4 of the square's)")
 
-    options = parser.parse_args(arguments)
-    if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(errors="backslashreplace")  # a name may have letters that the terminal has not
-    try:
-        return options.run(options)
-    except (ValueError, ModuleNotFoundError) as error:
-        print(f"percept-obs: {error}", file=sys.stderr)
-        return getattr(error, "code", 2)
-    except OSError as error:
-        said = f"cannot use {error.filename}: {error.strerror}" if error.strerror else error
-        print(f"percept-obs: {said}", file=sys.stderr)
-        return 2
+    return parser.parse_args(arguments)
 
 
 def _refuse_a_file(directory: Path) -> None:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import ast
 import csv
-import json
 import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -22,7 +21,7 @@ from percept_obs.exercises.copies import students_copy
 from percept_obs.exercises.individual import OURS, individual, same_name
 from percept_obs.exercises.marking import LONGEST, answered, lesson, marks, programs, run
 from percept_obs.exercises.models import notebooks
-from percept_obs.validation import bar
+from percept_obs.validation import bar, read_json
 from percept_obs.validation.plain import is_real
 
 if TYPE_CHECKING:
@@ -215,9 +214,9 @@ def read(file: Path) -> tuple[str, dict[str, str], str, str]:
     if file.is_symlink() or not file.is_file() or file.lstat().st_size > LARGEST:
         raise ValueError(f"not a plain file of at most {LARGEST // 10**6} MB")
     try:
-        notebook = json.loads(file.read_bytes())
-    except Exception as error:
-        raise ValueError(f"no notebook, for it cannot be read as JSON: {_why(error)}") from None
+        notebook = read_json(file)
+    except ValueError as error:
+        raise ValueError(f"no notebook, for {_why(error)}") from None
     cells = notebook.get("cells") if isinstance(notebook, dict) else None
     if not isinstance(cells, list) or not all(isinstance(cell, dict) for cell in cells):
         raise ValueError("not a notebook")

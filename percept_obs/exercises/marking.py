@@ -121,10 +121,12 @@ def run(source: str, notebook: Mapping[str, Any], task: str) -> str:
             start_new_session=True,
             text=True,
         )
-        with contextlib.suppress(subprocess.TimeoutExpired, BrokenPipeError):
-            child.communicate(json.dumps({**given, "name": answered(parts[here][2])[1]}), timeout=SECONDS)
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(child.pid, signal.SIGKILL)  # and what it has started
+        try:
+            with contextlib.suppress(subprocess.TimeoutExpired, BrokenPipeError):
+                child.communicate(json.dumps({**given, "name": answered(parts[here][2])[1]}), timeout=SECONDS)
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(child.pid, signal.SIGKILL)  # and what it has started
         answer = Path(place, "answer")
         if child.wait() or answer.is_symlink() or not answer.is_file():
             raise ValueError("its cell did not come to an end")

@@ -23,7 +23,7 @@ from percept_obs.figures.look import GREY, LIGHT, WIDTH
 from percept_obs.recording import Recording
 from percept_obs.system.view import refuse_several
 from percept_obs.tracking.run import Run
-from percept_obs.validation import checked, to_write
+from percept_obs.validation import checked, to_write, whole
 from percept_obs.validation.kinds import with_article
 
 P = ParamSpec("P")
@@ -86,8 +86,10 @@ class Figure:
         ValueError
             If matplotlib cannot write that format, or the path is a folder.
         """
-        key = DESCRIPTION.get(to_write(path).suffix.lower())
-        self.figure.savefig(path, dpi=2 * SHARP, metadata={key: self.text} if key else None)
+        target = to_write(path)
+        key = DESCRIPTION.get(target.suffix.lower())
+        with whole(target if target.suffix else target.with_suffix(".png")) as other:
+            self.figure.savefig(other, dpi=2 * SHARP, metadata={key: self.text} if key else None)
 
     def _repr_html_(self) -> str:
         picture = io.BytesIO()

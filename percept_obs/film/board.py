@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, dataclass, fields, replace
 from functools import cached_property
-from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 
 from percept_obs.compile import Array, Indices
 from percept_obs.recording.text_table import PathLike
-from percept_obs.validation import Kind, checked, limit, needed
+from percept_obs.validation import Kind, checked, limit, needed, read_json
 
 DICTIONARY = "DICT_4X4_50"
 """OpenCV's markers of 4 x 4 cells, the largest cells that there are."""
@@ -83,7 +82,7 @@ class Board:
     def from_json(cls, path: PathLike) -> Any:
         """Return the board in a file that `percept-obs board` wrote."""
         try:
-            given = json.loads(Path(path).read_text("utf-8"))
+            given = read_json(path)
             if missing := [each.name for each in fields(cls) if each.name not in given]:
                 raise ValueError(f"{', '.join(missing)} are not in it")
             return cls(**given)

@@ -75,8 +75,10 @@ class Film(Footage):
 
     Examples
     --------
-    >>> film = read_film("film.mp4", "board.json")  # doctest: +SKIP
-    >>> film.distances()  # doctest: +SKIP
+    >>> from percept_obs.film import example_film, read_film
+    >>> film = read_film(example_film())
+    >>> film.index(film[3])
+    3
     """
 
     video: Video

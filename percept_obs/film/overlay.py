@@ -14,6 +14,7 @@ from percept_obs.film.video import Video
 from percept_obs.recording.pixels import PixelCamera
 from percept_obs.recording.text_table import PathLike
 from percept_obs.tracking.run import Run
+from percept_obs.validation import whole
 
 TICKS = 90_000
 """Ticks of a film's clock in a second."""
@@ -36,7 +37,7 @@ def write_overlay(
     size = max(12, max(width, height) // 55)
     font = ImageFont.truetype(str(Path(get_data_path(), "fonts/ttf/DejaVuSans.ttf")), size)
     shown = _labels(camera, runs, claimed, 7 * size)
-    with av.open(str(path), "w", format="mp4") as file:
+    with whole(path) as other, av.open(str(other), "w", format="mp4") as file:
         stream: Any = file.add_stream("libx264", rate=30, options={"crf": "20", "preset": "veryfast"})
         stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
         stream.codec_context.time_base = Fraction(1, TICKS)

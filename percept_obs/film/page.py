@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import html
+from typing import TYPE_CHECKING
 
 from percept_obs.film.film import Film
 from percept_obs.studies.comparison import Comparison
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 STYLE = (
     "body{font:16px/1.5 system-ui,sans-serif;max-width:62rem;margin:2rem auto;padding:0 1rem;color-scheme:light dark}"
@@ -14,9 +18,8 @@ STYLE = (
 )
 
 
-def page(film: Film, table: Comparison | None, video: str, lab: str) -> str:
-    """Return a page of HTML about a film, with links to the film with distances drawn in and to the live lab."""
-    points = film.distances()
+def page(film: Film, points: pd.DataFrame, table: Comparison, video: str, lab: str) -> str:
+    """Return a page of HTML about a film, its `distances` and observers, with links to what is drawn and to the lab."""
     trusted = points[points["trusted"]]
     columns = ["point", "seconds", "distance", "claimed", "reference", "known", "error", "trusted", "why"]
     units = {
@@ -45,7 +48,7 @@ def page(film: Film, table: Comparison | None, video: str, lab: str) -> str:
             f"<p>{html.escape(judged)}</p>",
             f'<p><a href="{lab}">Open the live lab</a>: press play, and watch an observer find a distance.</p>',
             f"<p>{html.escape(film.sentence)}</p>",
-            "" if table is None else f"<h2>All observers</h2>{table._repr_html_()}",
+            f"<h2>All observers</h2>{table._repr_html_()}",
             f"<h2>All points, by the extended Kalman filter</h2>{rows}",
         ]
     )

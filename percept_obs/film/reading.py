@@ -96,8 +96,9 @@ def read_film(
 
     Examples
     --------
-    >>> film = read_film("film.mp4", "board.json")  # doctest: +SKIP
-    >>> film.recordings[0].source  # doctest: +SKIP
+    >>> from percept_obs.film import example_film
+    >>> film = read_film(example_film())
+    >>> film[0].source
     'board corner 0'
     """
     if poses is not None and camera is None:

@@ -15,6 +15,7 @@ from percept_obs.labs.points.lab import points_lab
 from percept_obs.labs.shared.printed import FRONT, Parts, file_of, packed, unpacked
 from percept_obs.labs.structure import texts as structure
 from percept_obs.labs.structure.lab import structure_lab
+from percept_obs.validation import write_whole
 
 LABS: Mapping[str, Callable[[], Parts]] = MappingProxyType(
     {
@@ -55,12 +56,12 @@ def changed(kind: str) -> list[str]:
 def main() -> None:
     """Write the files of all labs, and integrator and marks for the page's sources where they are at hand."""
     if INTEGRATOR.parent.exists():
-        INTEGRATOR.write_text(integrator.for_the_page(), encoding="utf-8")
-        LOOKS.write_text(look.for_the_page(), encoding="utf-8")
-        MODELS.write_text(models(), encoding="utf-8")
+        write_whole(INTEGRATOR, integrator.for_the_page().encode())
+        write_whole(LOOKS, look.for_the_page().encode())
+        write_whole(MODELS, models().encode())
     for kind, print_texts in LABS.items():
         file = file_of(kind)
-        file.write_bytes(packed(print_texts()))
+        write_whole(file, packed(print_texts()))
         print(f"{file}: {file.stat().st_size} bytes")
 
 

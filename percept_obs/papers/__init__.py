@@ -19,7 +19,9 @@ from dataclasses import replace
 from difflib import get_close_matches
 from importlib import import_module
 from itertools import chain
+from multiprocessing import active_children
 from pkgutil import iter_modules
+from signal import SIG_IGN, SIGINT, signal
 
 from percept_obs.papers.entries import Entry, Finding, Known, Verdict
 from percept_obs.papers.ledger import Ledger, page
@@ -145,10 +147,16 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
     if len(wanted) > FEW and (processes or workers()) > 1:
         asked = set(wanted)
         parts = [[entry for entry in part if entry in asked] for paper in _PAPERS.values() for part in paper.PARTS]
-        with ProcessPoolExecutor(processes) as pool:
-            results = bar(pool.map(_found, parts), "parts", len(parts))
-            for entry, values in zip(chain(*parts), chain.from_iterable(results), strict=True):
-                vars(entry).update(values)  # where cached properties keep what they found
+        others = {*active_children()}
+        with ProcessPoolExecutor(processes, initializer=signal, initargs=(SIGINT, SIG_IGN)) as pool:
+            try:
+                results = bar(pool.map(_found, parts), "parts", len(parts))
+                for entry, values in zip(chain(*parts), chain.from_iterable(results), strict=True):
+                    vars(entry).update(values)  # where cached properties keep what they found
+            except BaseException:  # an interrupt ends the work of the others as well
+                for process in {*active_children()} - others:
+                    process.terminate()
+                raise
     return all([entry.agrees for entry in bar(wanted, "equations")])
 
 

@@ -36,7 +36,8 @@ def load_utias_points(path: str | os.PathLike[str] | None = None) -> Recording:
     Examples
     --------
     >>> from percept_obs.points.utias import load_utias_points
-    >>> load_utias_points().outputs.shape  # doctest: +SKIP
+    >>> from percept_obs.recording.utias import UTIAS_CUT
+    >>> load_utias_points(UTIAS_CUT).outputs.shape
     (1366, 12, 2)
     """
     tables = utias_tracks(path)

@@ -69,7 +69,13 @@ class ColmapModel:
 
     Examples
     --------
-    >>> read_colmap("sparse/0", rate=30).recordings(pixel_sigma=0.5)  # doctest: +SKIP
+    >>> from percept_obs.recording.pose_files import read_tum
+    >>> from percept_obs.recording.worked import WORKED_CAMERA, worked_folder
+    >>> poses, seen = read_tum(worked_folder() / "poses.txt"), np.array([[0, 0], [1, 0]])
+    >>> pixels = np.array([[320.0, 240.0], [322.0, 240.0]])
+    >>> model = ColmapModel(poses, WORKED_CAMERA, np.array([[0.0, 0.0, 2.0]]), seen, pixels, (7,))
+    >>> model.recordings()[0].source
+    'COLMAP, point 7'
     """
 
     poses: Poses
@@ -109,7 +115,7 @@ class ColmapModel:
 
 @checked
 def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECONDS) -> ColmapModel:
-    """Return the model in a folder of COLMAP.
+    r"""Return the model in a folder of COLMAP.
 
     The scale of such a model is arbitrary, and with it every distance.
 
@@ -139,8 +145,14 @@ def read_colmap(folder: PathLike, rate: float | None = None, clock: Clock = SECO
 
     Examples
     --------
-    >>> model = read_colmap("sparse/0", rate=30)  # doctest: +SKIP
-    >>> recordings = model.recordings(pixel_sigma=0.5, gap=0.2, shortest=1.0)  # doctest: +SKIP
+    >>> import pathlib, tempfile
+    >>> files = {"cameras": "1 PINHOLE 640 480 500 500 320 240", "points3D": "7 0 0 2 255 255 255 0.5 1 0 2 0"}
+    >>> files["images"] = "1 1 0 0 0 0 0 0 1 0.png\n320 240 7\n2 1 0 0 0 -0.1 0 0 1 1.png\n295 240 7"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     for name, text in files.items():
+    ...         _ = (pathlib.Path(folder) / f"{name}.txt").write_text(text)
+    ...     read_colmap(folder, rate=10).poses.position[1, 0].item()
+    0.1
     """
     if rate is not None:
         positive(rate=rate)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 
 import numpy as np
 
@@ -202,7 +201,7 @@ def write_tum(path: PathLike, poses: Poses) -> None:
     pd = load_pandas()
     cells = (poses.time, *poses.position.T, *poses.orientation.T)
     table = pd.DataFrame(dict(zip(TUM, cells, strict=True)))
-    write_whole(Path(path), f"#{table.to_csv(sep=' ', index=False, lineterminator=chr(10))}".encode())
+    write_whole(path, f"#{table.to_csv(sep=' ', index=False, lineterminator=chr(10))}".encode())
 
 
 def _read(

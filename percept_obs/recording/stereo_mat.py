@@ -64,8 +64,9 @@ class StereoTracks:
 
     Examples
     --------
-    >>> tracks = read_stereo_mat("dataset3.mat")  # doctest: +SKIP
-    >>> tracks.recordings("UTIAS")[0].distances["stereo"][0]  # doctest: +SKIP
+    >>> from percept_obs.recording.utias import utias_tracks, UTIAS_CUT
+    >>> track = utias_tracks(UTIAS_CUT).recordings("UTIAS", pixel_sigma=4.0)[0]
+    >>> round(track.distances["stereo"][0].item(), 4)
     0.8313
     """
 
@@ -179,8 +180,10 @@ def read_stereo_mat(
 
     Examples
     --------
-    >>> tracks = read_stereo_mat("2011_09_26_drive_0036_sync_KLT.mat", shortest=1.0)  # doctest: +SKIP
-    >>> recordings = tracks.recordings("KITTI 0036", pixel_sigma=0.5)  # doctest: +SKIP
+    >>> from percept_obs.recording.utias import UTIAS_CUT
+    >>> tracks = read_stereo_mat(UTIAS_CUT, shortest=5.0)
+    >>> len(tracks.tracks), tracks.images.shape
+    (13, (1900, 20, 4))
     """
     file = existing(path, "a MATLAB file of stereo tracks")
     try:

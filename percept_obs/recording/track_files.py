@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
@@ -75,4 +74,4 @@ def write_tracks(path: PathLike, recordings: Sequence[Recording], camera: PixelC
         if known:
             columns["depth"] = np.nan if each.truth is None else each.distance
         tables.append(pd.DataFrame(columns | {name: each.distances[name] for name in first.distances}))
-    write_whole(Path(path), pd.concat(tables).to_csv(index=False, lineterminator="\n").encode())
+    write_whole(path, pd.concat(tables).to_csv(index=False, lineterminator="\n").encode())

@@ -58,8 +58,8 @@ def find_utias(path: str | os.PathLike[str] | None = None) -> Path:
 
     Examples
     --------
-    >>> find_utias("data").name  # doctest: +SKIP
-    'dataset3.mat'
+    >>> find_utias(UTIAS_CUT).name
+    'dataset3_cut.mat'
     """
     if path is not None:
         return _checked(Path(path), "path=")
@@ -88,7 +88,7 @@ def load_utias(path: str | os.PathLike[str] | None = None) -> tuple[Recording, .
 
     Examples
     --------
-    >>> len(load_utias())  # doctest: +SKIP
+    >>> len(load_utias(UTIAS_CUT))
     44
     """
     return utias_tracks(path).recordings("UTIAS", PIXEL_SIGMA)
@@ -121,7 +121,7 @@ def utias_tracks(path: str | os.PathLike[str] | None = None) -> StereoTracks:
 
     Examples
     --------
-    >>> len(utias_tracks().tracks)  # doctest: +SKIP
+    >>> len(utias_tracks(UTIAS_CUT).tracks)
     44
     """
     return read_stereo_mat(find_utias(path))

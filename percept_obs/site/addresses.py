@@ -8,6 +8,8 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from percept_obs.validation import write_whole
+
 TITLE = "One picture never tells how far. Move, and it does."
 ABOUT = (
     "A camera sees a moving point as a direction. Observers find its distance: live labs, notebooks, papers checked."
@@ -62,7 +64,7 @@ def write_sitemap(target: Path, address: str) -> None:
     pages = sorted(path.as_posix() for path in found if {"_static", "lite", "slides"}.isdisjoint(path.parts))
     entries = "".join(f"<url><loc>{escape(address + page)}</loc></url>\n" for page in pages)
     head = '<?xml version="1.0" encoding="utf-8"?>\n<urlset xmlns="http://www.sitemaps.org/schemas/sitemap/0.9">\n'
-    (target / "sitemap.xml").write_text(f"{head}{entries}</urlset>\n", encoding="utf-8")
+    write_whole(target / "sitemap.xml", f"{head}{entries}</urlset>\n".encode())
 
 
 def card() -> bytes:

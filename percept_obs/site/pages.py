@@ -62,7 +62,8 @@ def contents(title: str, intro: str, entries: Iterable[str]) -> str:
 
 def ledger_pages(judged: Collection[str]) -> Pages:
     """Yield a page for each ledger and for each of its equations; of those not judged, what is recorded."""
-    judge(tuple(NAMED[name] for name in judged))
+    if judged:
+        judge(tuple(NAMED[name] for name in judged))
     intro = f"What the papers print, equation by equation, and what a computation says of it.\n\n{verdicts()}"
     yield "ledger/index.md", contents("The papers, equation by equation", intro, [f"{slug(n)}/index" for n in NAMED])
     for name, ledger in NAMED.items():

@@ -18,12 +18,12 @@ from percept_obs.compile.integrator import LONGEST_STEP
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Camera, Scenario, record
 from percept_obs.recording.many import numbers_of
-from percept_obs.studies.plan import CAMERA, DONE, NOT_RUN, OUTCOMES, STATISTICS, STATUS, Plan, camera_with, grid_of
+from percept_obs.studies.plan import CAMERA, DONE, OUTCOMES, STATISTICS, STATUS, Plan, camera_with, grid_of
 from percept_obs.system.motion import Motion
 from percept_obs.system.surfaces import POINT
 from percept_obs.tracking.following import DoesNotFit, named_start, track
 from percept_obs.tracking.verdict import TOLERANCE
-from percept_obs.validation import bar, checked, limit, listed, needed, positive, warn, workers
+from percept_obs.validation import bar, checked, limit, listed, needed, positive, workers
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,10 +35,6 @@ CHUNK = 2048
 
 MOST_RUNS = 10_000_000
 """Runs that one ensemble may have: about 1 GiB of statistics."""
-
-
-class Unfinished(UserWarning):
-    """An ensemble was interrupted; the runs that are missing have the status "not_run"."""
 
 
 @checked
@@ -105,11 +101,6 @@ def ensemble(
         If the observer cannot follow the scenario.
     ModuleNotFoundError
         If xarray is not installed.
-
-    Warns
-    -----
-    percept_obs.studies.ensemble.Unfinished
-        If it was interrupted; what is done is returned.
 
     See Also
     --------
@@ -261,18 +252,15 @@ def _dataset(plan: Plan, results: Array) -> xr.Dataset:
 
 
 def _run_all(plan: Plan, results: Array, chunk: int) -> None:
-    """Compute all runs in chunks; warn if interrupted."""
+    """Compute all runs in chunks."""
     chunks = [slice(begin, min(begin + chunk, len(results))) for begin in range(0, len(results), chunk)]
     compiled(plan.loop, plan.language)  # here and now, where numba may set warning filters
-    computed = _concurrent(plan, chunks) if workers() > 1 else ((each, plan.compute(each)) for each in chunks)
+    several = plan.language == "numba" and workers() > 1  # numpy's loop keeps the other threads waiting
+    computed = _concurrent(plan, chunks) if several else ((each, plan.compute(each)) for each in chunks)
     with closing(computed), bar(None, "runs", len(results), unit="run") as progress:
-        try:
-            for each, found in computed:
-                results[each] = found
-                progress.update(len(found))
-        except KeyboardInterrupt:
-            missing = results[:, 0] == NOT_RUN
-            warn(Unfinished(f"interrupted: {int(missing.sum())} of {len(results)} runs are missing"))
+        for each, found in computed:
+            results[each] = found
+            progress.update(len(found))
 
 
 def _concurrent(plan: Plan, todo: Sequence[slice]) -> Generator[tuple[slice, Array]]:
@@ -283,4 +271,4 @@ def _concurrent(plan: Plan, todo: Sequence[slice]) -> Generator[tuple[slice, Arr
         for future in as_completed(begun):
             yield begun.pop(future), future.result()
     finally:
-        executor.shutdown(cancel_futures=True)
+        executor.shutdown(wait=False, cancel_futures=True)  # an interrupt waits for no chunk

@@ -30,8 +30,8 @@ from percept_obs.validation import numbers, once
 if TYPE_CHECKING:
     import xarray as xr
 
-NOT_RUN, DONE, NOT_IN_FRONT = range(3)
-STATUS = ("not_run", "done", "not_in_front")
+DONE, NOT_IN_FRONT = range(2)
+STATUS = ("done", "not_in_front")
 """Status of a run by its number; no run is made of a point that does not stay in front of the camera."""
 
 OUTCOMES = ("converged", "late", "outside", "behind", "none", "diverged")

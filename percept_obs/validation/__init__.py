@@ -13,8 +13,10 @@ from percept_obs.validation.environment import bar as bar
 from percept_obs.validation.environment import load_pandas as load_pandas
 from percept_obs.validation.environment import missing as missing
 from percept_obs.validation.environment import needed as needed
+from percept_obs.validation.environment import read_json as read_json
 from percept_obs.validation.environment import to_write as to_write
 from percept_obs.validation.environment import warn as warn
+from percept_obs.validation.environment import whole as whole
 from percept_obs.validation.environment import workers as workers
 from percept_obs.validation.environment import write_whole as write_whole
 from percept_obs.validation.expressions import derived as derived

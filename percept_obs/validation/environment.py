@@ -1,11 +1,13 @@
-"""Optional modules, cores, progress bars, whole files and warnings: whatever depends on the machine or the caller."""
+"""Optional modules, cores, progress bars, files and warnings: whatever depends on the machine or the caller."""
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -64,19 +66,40 @@ def to_write(path: str | os.PathLike[str], *endings: str) -> Path:
     return target
 
 
-def write_whole(target: Path, content: bytes) -> None:
-    """Write a file under another name and rename it, so that half a file is never found."""
-    if not target.parent.is_dir():
-        raise FileNotFoundError(f"the folder of '{target}' is not there; name a file in one that is")
-    if target.is_dir():
-        raise ValueError(f"'{target}' is a folder; name a file in it")
-    other = target.with_name(f".{target.name}.{os.getpid()}")
+@contextmanager
+def whole(target: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yield another file to write, which then takes the name of the target, so that half a file is never found."""
+    file = Path(target)
+    if not file.parent.is_dir():
+        raise FileNotFoundError(f"the folder of '{file}' is not there; name a file in one that is")
+    if file.is_dir():
+        raise ValueError(f"'{file}' is a folder; name a file in it")
+    other = file.with_name(f".{os.getpid()}.{file.name}")
     try:
-        other.write_bytes(content)
-        other.replace(target)
-    except OSError:
+        yield other
+        other.replace(file)
+    except OSError as error:
+        if not error.strerror:
+            raise
+        raise OSError(error.errno, error.strerror, str(file)) from None  # a full disk names no file
+    finally:
         other.unlink(missing_ok=True)
-        raise
+
+
+def write_whole(target: str | os.PathLike[str], content: bytes) -> None:
+    """Write a file, or leave the one that is there."""
+    with whole(target) as other:
+        other.write_bytes(content)
+
+
+def read_json(file: str | os.PathLike[str]) -> Any:
+    """Return what a file of JSON holds; a ValueError if it holds something else, or is nested too deep to be read."""
+    try:
+        return json.loads(Path(file).read_bytes())
+    except RecursionError:
+        raise ValueError("it is nested too deep; write it flatter") from None
+    except ValueError as error:
+        raise ValueError(f"it cannot be read as JSON: {error}") from None
 
 
 def warn(warning: Warning) -> None:

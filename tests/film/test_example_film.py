@@ -1,6 +1,9 @@
 """The film that ships is what the renderer draws, and its distances are true; who only turns is told not to trust."""
 
+import errno
+import os
 from dataclasses import replace
+from itertools import islice
 
 import av
 import numpy as np
@@ -60,6 +63,22 @@ def test_moving_sideways_is_trusted_and_turning_is_not(kind, least, most, tmp_pa
     assert least <= np.mean([trust.trusted for trust in trusts]) <= most
     if kind == "turn":
         assert "Do not trust the estimate" in trusts[0].sentence
+
+
+@pytest.mark.slow
+def test_a_full_disk_leaves_the_film_that_was_there(tmp_path, monkeypatch):
+    film, path = read_film(example_film()), tmp_path / "film.mp4"
+    path.write_bytes(b"old")
+    shots = type(film.video).shots
+
+    def until_full(video, label):
+        yield from islice(shots(video, label), 3)
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(type(film.video), "shots", until_full)
+    with pytest.raises(OSError, match=r"No space left on device: '.*/film.mp4'"):
+        film.overlay(path)
+    assert [file.read_bytes() for file in tmp_path.iterdir()] == [b"old"]
 
 
 @pytest.mark.slow

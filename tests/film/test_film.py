@@ -1,6 +1,5 @@
 """A film of a printed board gives its camera, its poses, and how far things are, as the renderer knows them."""
 
-import os
 from dataclasses import replace
 
 import av
@@ -10,7 +9,6 @@ from film_renderer import quick_film
 from film_study import AFTER, error
 
 from percept_obs import diagnose
-from percept_obs.cli import main
 from percept_obs.film import Board, read_film
 from percept_obs.film.film import TRIANGULATION
 from percept_obs.film.lens import reaches
@@ -131,18 +129,6 @@ def test_a_film_that_was_held_upright_stands_upright(cache, tmp_path):
     assert film.video.size == (360, 640)
     assert np.median(errors(film, truth, board=True)) < 0.03
     assert film.frames.extent[2] > film.frames.extent[3]
-
-
-@pytest.mark.night
-@pytest.mark.slow
-def test_the_command_writes_a_page(filmed, cache, tmp_path, capsys):
-    film, _ = filmed
-    assert main(["film", str(film.video.path), str(tmp_path / "told"), "--ruler", "50", "--tracks", "12"]) == 0
-    assert "index.html" in capsys.readouterr().out
-    assert {"index.html", "lab.html", "film.mp4", "distances.csv"} == {*os.listdir(tmp_path / "told")}
-    page = (tmp_path / "told/index.html").read_text("utf-8")
-    assert 'src="film.mp4"' in page
-    assert "board corner 0" in page
 
 
 @pytest.mark.parametrize(

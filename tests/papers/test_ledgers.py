@@ -15,7 +15,7 @@ from ledger_mutations import say_the_same, slips
 from refusals import refuses
 from sample_sizes import sampled
 
-from percept_obs import papers
+from percept_obs import cli, papers
 from percept_obs.checking.slips import symbols_in
 from percept_obs.papers import (
     CHWA2019,
@@ -227,9 +227,11 @@ test_what_is_not_found_is_told_with_what_is_near = refuses(
 
 
 @pytest.mark.slow
-def test_the_report_shows_every_entry_of_every_paper_in_120_columns_and_counts_verdicts():
-    assert papers.judge()
-    tables = papers.report().split("\n\n\n")
+def test_the_report_shows_every_entry_of_every_paper_in_120_columns_and_counts_verdicts(capsys):
+    assert cli.main(["check"]) == 0
+    report, last = capsys.readouterr().out.rsplit("\n\n", 1)
+    assert re.match(rf"{sum(len(each.entries) for each in papers.LEDGERS)} judged in ", last)
+    tables = report.split("\n\n\n")
     assert len(tables) == len(papers.LEDGERS)
     for ledger, table in zip(papers.LEDGERS, tables, strict=True):
         assert max(map(len, table.splitlines())) <= 120

@@ -5,12 +5,12 @@ import json
 import pytest
 
 from percept_obs import cli, site
-from percept_obs.exercises.models import notebooks
+from percept_obs.exercises import models
 from percept_obs.site import SiteFault, faults
 from percept_obs.site.named import named
 
 NAME = "16_your_own_film.ipynb"
-WHOLE = notebooks()
+WHOLE = models.notebooks()
 
 
 TITLE = {"cell_type": "markdown", "id": "title", "metadata": {"tags": ["slide"]}, "source": "# A title"}
@@ -82,7 +82,7 @@ def test_all_are_told_together_before_any_work(monkeypatch, tmp_path, capsys):
         site.build(tmp_path / "new", whole)
     assert not capsys.readouterr().out
     assert all(str(error.value).count(said) == 2 for said in ("no title", "the tag slides"))
-    monkeypatch.setattr(cli, "notebooks", lambda: whole)
-    assert cli.main(["site", str(tmp_path / "new"), "--without-running"]) == 1
+    monkeypatch.setattr(models, "notebooks", lambda: whole)
+    assert cli.main(["site", str(tmp_path / "new")]) == 1
     assert "00_start.ipynb: its first cell is no title" in capsys.readouterr().err
     assert not (tmp_path / "new").exists()

@@ -1,13 +1,11 @@
 """What texts say holds: their examples run, and the files, notebooks, sections and equations that they name exist."""
 
 import ast
-import csv
 import doctest
 import importlib
 import inspect
 import json
 import re
-import shlex
 from enum import Enum
 from functools import cached_property
 from types import FunctionType
@@ -16,7 +14,7 @@ import pytest
 from notebook_exercises import code as code_of
 from places import NOTEBOOKS
 
-from percept_obs import check, cli
+from percept_obs import check
 from percept_obs.observers.family import Family
 from percept_obs.site import TEXTS
 from percept_obs.site.named import named
@@ -81,19 +79,6 @@ def test_a_motion_of_one_s_own_runs_as_its_page_says(capsys):
     assert 0 < names["least"][-1] < 0.1
 
 
-@pytest.mark.slow
-def test_the_commands_of_the_page_on_marks_give_a_table(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    roster = re.search(r"```\n(student.*?)```", ON_THE_SITE["marks.md"], re.DOTALL)[1]
-    (tmp_path / "roster.csv").write_text(roster, "utf-8")
-    for command in re.findall(r"^    percept-obs (.*)", ON_THE_SITE["marks.md"], re.MULTILINE):
-        assert cli.main(shlex.split(command)) == 0
-    with open("marks.csv", encoding="utf-8-sig", newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert [row["student"] for row in rows] == ["Ada Lovelace", "Emmy Noether"]
-    assert not any(row["handed in"] == "missing" or row["faults"] for row in rows), rows
-
-
 def test_every_notebook_stands_in_the_lecture_map():
     lectures = GUIDE[GUIDE.index("| lecture |") : GUIDE.index("## Lesson plans")]
     assert set(SECTIONS) <= set(re.findall(r'nb\["(\d\d)"\]', lectures))
@@ -156,6 +141,16 @@ PUBLIC = {f"{module}.{names[0]}": value for module, values in public().items() f
 """Public functions and classes, by the name under which the reference shows them."""
 
 
+def is_called(value):
+    """True if an example that is run calls a function; of a class, which a function may make, if there is any."""
+    members = [v for v in vars(value).values() if isinstance(v, MEMBER)] if inspect.isclass(value) else []
+    texts = [each.__doc__ or "" for each in (value, *members)]
+    examples = [each for text in texts for each in doctest.DocTestParser().get_examples(inspect.cleandoc(text))]
+    names = "|".join(next(names for values in public().values() for names, each in values if each is value))
+    called = "" if inspect.isclass(value) else rf"\b({names})\("
+    return any(re.search(called, each.source) for each in examples if doctest.SKIP not in each.options)
+
+
 def missing_sections(value):
     """Return the sections of numpydoc that the docstring of a public function or class lacks."""
     cls = inspect.isclass(value)
@@ -165,13 +160,11 @@ def missing_sections(value):
     body = inspect.unwrap(getattr(value, "__post_init__", value.__init__) if cls else value)
     written = isinstance(body, FunctionType) and body.__code__.co_filename != "<string>"  # as a dataclass's is not
     made = not (inspect.isabstract(value) or getattr(value, "_is_protocol", False))  # by its own name
-    members = [v for v in vars(value).values() if isinstance(v, MEMBER)] if cls else []
     returned = "None" if cls else value.__annotations__.get("return", "None")
     needed = {
         "Parameters": made and bool(inspect.signature(value).parameters),
         "Returns": returned != "None" and not text.startswith("Return "),
         "Raises": made and written and bool(re.search(r"^ +raise ", inspect.getsource(body), re.MULTILINE)),
-        "Examples": not any(">>> " in (thing.__doc__ or "") for thing in (value, *members)),
     }
     return {name for name, holds in needed.items() if holds and f"{name}\n-----" not in text}
 
@@ -179,6 +172,13 @@ def missing_sections(value):
 def test_every_public_name_has_its_sections():
     lacking = {name: missing for name, value in PUBLIC.items() if (missing := missing_sections(value))}
     assert not lacking, lacking
+
+
+def test_every_public_name_is_called_by_an_example():
+    errors = {value for value in PUBLIC.values() if inspect.isclass(value) and issubclass(value, Exception | Enum)}
+    called = {name: is_called(value) for name, value in PUBLIC.items() if callable(value) and value not in errors}
+    assert len(called) > 200
+    assert [name for name, is_so in called.items() if not is_so] == []
 
 
 def test_every_function_that_a_notebook_imports_is_in_the_reference():

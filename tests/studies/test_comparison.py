@@ -9,7 +9,6 @@ from examples import BOTH, NOISY, ONE, ZERO
 from refusals import refuses
 
 from percept_obs import check_consistency, cramer_rao, ekf, figures, ibo, pinhole, record, scenarios, smo, track
-from percept_obs.cli import main
 from percept_obs.observers import de_luca
 from percept_obs.recording import Recording
 from percept_obs.studies.comparison import compare, over_bound, relative_distance_errors
@@ -68,17 +67,6 @@ test_comparisons_that_make_no_sense_are_refused = refuses(
         "no truth",
     ),
 )
-
-
-def test_the_table_is_printed_from_one_command(capsys):
-    assert main(["compare", "--seeds", "2", "--duration", "2"]) == 0
-    printed = capsys.readouterr().out
-    for name in ("identifier-based", "extended Kalman", "De Luca", "Spica", "immersion", "linear approximation"):
-        assert name in printed
-    assert "y2, y3 are hidden; measure every image coordinate" in printed
-    with pytest.raises(SystemExit):
-        main(["compare", "--seeds", "0"])
-    assert "not a positive number" in capsys.readouterr().err
 
 
 def test_references_that_are_known_now_and_then_count_when_they_are():

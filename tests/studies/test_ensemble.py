@@ -1,5 +1,6 @@
-"""An ensemble says of every run what `track` says of it, in any chunks; what is done is kept."""
+"""An ensemble says of every run what `track` says of it, in any chunks; an interrupt ends it."""
 
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -28,8 +29,6 @@ from percept_obs import (
 )
 from percept_obs.observers import OBSERVERS
 from percept_obs.recording.many import with_numbers
-from percept_obs.studies import ensemble as module
-from percept_obs.studies.ensemble import Unfinished
 from percept_obs.studies.plan import OUTCOMES, STATUS, Plan
 from percept_obs.validation import environment
 
@@ -183,25 +182,20 @@ def test_it_keeps_names_units_and_settings_in_files(xr, tmp_path):
         xr.testing.assert_identical(again.load(), found)
 
 
-def test_an_interrupted_ensemble_keeps_what_is_done(monkeypatch):
-    over = {"gain": np.linspace(2, 20, 8)}
-    whole = ensemble(EQ35, ibo(BOTH), over, duration=0.5)
+@pytest.mark.parametrize("language", ["python", "numba"])
+def test_an_interrupt_ends_an_ensemble(monkeypatch, language):
     compute, calls = Plan.compute, []
 
-    def counted(plan, chunk):
-        calls.append(chunk.stop - chunk.start)
+    def interrupted(plan, chunk):
+        calls.append(chunk)
         if len(calls) == 3:
-            raise KeyboardInterrupt
+            signal.raise_signal(signal.SIGINT)
         return compute(plan, chunk)
 
-    monkeypatch.setattr(module, "workers", lambda: 1)
-    monkeypatch.setattr(Plan, "compute", counted)
-    with pytest.warns(Unfinished, match="of 8 runs are missing"):
-        part = ensemble(EQ35, ibo(BOTH), over, duration=0.5, chunk=2)
-    done = part.status.values == STATUS.index("done")
-    assert 4 <= done.sum() < 8
-    assert_array_equal(part.rms.values[done], whole.rms.values[done])
-    assert np.isnan(part.rms.values[~done]).all()
+    monkeypatch.setattr(Plan, "compute", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        ensemble(EQ35, ibo(BOTH), {"gain": np.linspace(2, 20, 200)}, duration=0.5, chunk=2, language=language)
+    assert len(calls) < 50
 
 
 test_what_makes_no_sense_is_refused = refuses(

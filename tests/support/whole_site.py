@@ -18,10 +18,10 @@ def shared_site(base, ran):
 
 def made(target, ran):
     """Make the site in a folder, with the exam and without JupyterLite, which has tests of its own."""
-    from percept_obs import site
-    from percept_obs.exercises.models import notebooks
+    from percept_obs import cli, site
+    from percept_obs.exercises import models
 
-    copies, run_all = notebooks(), site.run_all
+    copies, run_all = models.notebooks(), site.run_all
     second = "from percept_obs.labs import observer_lab\nobserver_lab(outputs=['y1'])"
     cell = {"cell_type": "code", "id": "second", "metadata": {}, "execution_count": None, "outputs": []}
     copies[NOTEBOOK]["cells"].append(cell | {"source": second})
@@ -41,7 +41,8 @@ def made(target, ran):
         warnings.simplefilter("ignore")  # the generator's own
         patch.setattr(site, "run_all", taken)
         patch.setattr(site.lite, "write_lite", no_lite)
-        site.build(target, copies, exam=True, address=ADDRESS, python=True)
+        patch.setattr(models, "notebooks", lambda: copies)
+        assert cli.main(["site", "--for", "teachers", "--address", ADDRESS, "--python", str(target)]) == 0
     for path in (target / "notebooks").glob("[0-9]*.html"):  # as students get them: only teachers get the exam
         path.write_text(path.read_text("utf-8").replace("</body>", EXERCISES), "utf-8")
     return target

@@ -183,8 +183,8 @@ def test_settings_that_were_read_back_may_do_nothing(make):
     [
         ("exam a {}", "is a file"),
         ("lab --copy-only --student= new", "an empty name"),
-        ("site --without-running --address here new", "it begins with https://"),
-        ("site --without-running --address http:// new", "it begins with https://"),
+        ("site --address here new", "it begins with https://"),
+        ("site --address http:// new", "it begins with https://"),
         ("collect . -o marks.docx", "name 'marks.csv', not 'marks.docx'"),
     ],
 )

@@ -361,6 +361,26 @@ test("nothing is found while the known speed passes zero, and no future is given
   moving.lab.close();
 });
 
+test("the button of the time is called what a press does, also while it plays", async () => {
+  const { lab, page, find } = await hand("observer", { still: false });
+  const called = async (word) => {
+    for (let k = 0; k < 20; k++) {
+      await new Promise((resolve) => setImmediate(resolve));
+      page.pass(20);
+    }
+    assert.match(find("play").getAttribute("aria-label"), word);
+  };
+  for (let turn = 0; turn < 2; turn++) {
+    lab.screen.clock.play();
+    await called(/^Pause;/);
+    assert.ok(lab.screen.clock.playing);
+    use(find("play"));
+    await called(/^Play, /);
+    assert.ok(!lab.screen.clock.playing);
+  }
+  lab.close();
+});
+
 test("a choice of unknowns says its corollary, its determinant, and why it is refused", async () => {
   const open = await hand("structure", { view: { more: "known" } });
   const { lab, press, tick, put } = open;

@@ -155,9 +155,9 @@ export class Clock {
   show() {
     const [sign, word] = this.still.matches ? [STEP, "Step"] : this.playing ? [PAUSE, "Pause"] : [PLAY, "Play"];
     setAttribute(this.sign, "d", sign);
-    const at = `${this.present().toFixed(1)} of ${this.end.toFixed(1)} s`;
-    const text = `${word}, ${at}; arrow keys move the time, plus and minus zoom`;
-    if (!this.playing) setAttribute(this.press, "aria-label", text);
+    // A time that runs would be read aloud again and again.
+    const at = this.playing ? "" : `, ${this.present().toFixed(1)} of ${this.end.toFixed(1)} s`;
+    setAttribute(this.press, "aria-label", `${word}${at}; arrow keys move the time, plus and minus zoom`);
     this.press.disabled = this.stopped();
   }
 }
