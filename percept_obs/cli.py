@@ -103,14 +103,10 @@ def exam(options: argparse.Namespace) -> int:
 def site(options: argparse.Namespace) -> int:
     """Write the course as pages that need neither Python nor a network, with live labs, equations and reference."""
     from percept_obs.exercises.models import notebooks
-    from percept_obs.site import NEEDS, SiteFault, build, lite
-    from percept_obs.validation import needed
+    from percept_obs.site import SiteFault, build
 
     _refuse_a_file(options.directory)
     try:
-        needed("site", *NEEDS)
-        if options.python:
-            needed("lite", *lite.NEEDS)
         exam, run = options.readers == "teachers", () if options.without_running else None
         build(options.directory, notebooks(), exam=exam, address=options.address, python=options.python, run=run)
     except (SiteFault, OSError, ModuleNotFoundError) as error:

@@ -26,8 +26,9 @@ from percept_obs.site.front import PLAYER, front, tree
 from percept_obs.site.named import named
 from percept_obs.site.notebooks import SiteFault, labs_of, not_run, run_all, without_widgets
 from percept_obs.site.pages import Pages, contents, ledger_pages, reference
+from percept_obs.validation import needed
 
-__all__ = ["NEEDS", "SiteFault", "build"]
+__all__ = ["SiteFault", "build"]
 
 NEEDS = ("sphinx", "myst_nb", "furo", "sphinx_revealjs", "latex2mathml", "nbclient")
 """Modules of the extra "site"."""
@@ -99,6 +100,8 @@ def build(
     SiteFault
         If a notebook does not run, a page has a fault such as a link that leads nowhere, or JupyterLite cannot be
         built.  What can be known without running is asked before any work starts, and told at once.
+    ModuleNotFoundError
+        If a package that builds the site is missing; it says how to get it.
     """
     if address and not re.match("https?://[^/]", address):
         raise ValueError(f"the address is {address!r}; it begins with https://, as https://example.org/course/")
@@ -108,6 +111,9 @@ def build(
     texts = {path: text for path, text in _texts(exam) if path.endswith(".md")}
     if found := [*faults_of(notebooks, texts, names, run)]:
         raise SiteFault("\n".join(("the site has faults:", *found)))
+    needed("site", *NEEDS)
+    if python:
+        needed("lite", *lite.NEEDS)
     with tempfile.TemporaryDirectory() as folder:
         source, shown = Path(folder) / "site", Path(folder) / "slides"
         article, lab = front(notebooks)

@@ -3,6 +3,7 @@
 import json
 from dataclasses import asdict
 
+import cv2
 import matplotlib
 import numpy as np
 import pypdfium2 as pdfium
@@ -12,8 +13,6 @@ from percept_obs import cli
 from percept_obs.film import Board, board_pdf
 from percept_obs.film.board import other_markers
 from percept_obs.film.printing import largest_square
-
-cv2 = pytest.importorskip("cv2")
 
 MM = 10  # pixels in the pictures of pages
 BOARDS = [Board(), Board(9, 6, 0.029, 0.02), Board(3, 3, 0.059, 0.04425)]

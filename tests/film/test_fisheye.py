@@ -2,8 +2,8 @@
 
 from types import SimpleNamespace
 
+import cv2
 import numpy as np
-import pytest
 from scipy.spatial.transform import Rotation
 
 from percept_obs import PixelCamera
@@ -12,8 +12,6 @@ from percept_obs.film.lens import find_poses
 from percept_obs.film.pictures import undistorted
 from percept_obs.film.reading import straightened
 from percept_obs.film.sighting import Sighting
-
-cv2 = pytest.importorskip("cv2")
 
 LENS = PixelCamera((300, 300), (400, 300), (800, 600), (-0.01, 0.05, -0.05, 0.01), "equidistant")
 

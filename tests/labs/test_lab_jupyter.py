@@ -43,7 +43,7 @@ def server(folder, tmp_path_factory):
 @pytest.fixture(scope="module")
 def browser_page(chromium, server, tmp_path_factory):
     with lab_page(chromium, server, tmp_path_factory.mktemp("browser")) as page:
-        page.set_default_timeout(15_000)
+        page.set_default_timeout(60_000)  # a kernel loads everything first, as where `run_all` waits
         yield page
 
 

@@ -1,9 +1,12 @@
 """README.md is a first screen that a registry shows as well, pictures can be drawn again, one line names the owner."""
 
 import re
+import sys
 import tomllib
 from itertools import pairwise
 
+import browsers
+import needs
 import pytest
 from PIL import Image, ImageChops
 from readme import (
@@ -28,6 +31,7 @@ from readme import (
     with_owner,
     with_part,
 )
+from readme_renderer.markdown import render
 
 from percept_obs import cli
 
@@ -125,7 +129,6 @@ def test_one_line_names_the_owner_and_can_name_another():
 
 def test_a_registry_shows_readme():
     """Its renderer takes out what it does not allow, and knows no files beside the text."""
-    render = pytest.importorskip("readme_renderer.markdown").render
     shown = render(MADE[README](TEXT, ADDRESS))
     sources = re.findall(r'<img [^>]*src="([^"]*)"', shown)
     assert sources == [f"https://raw.githubusercontent.com/some-body/percept_obs/HEAD/.github/{MOVING.name}"]
@@ -135,6 +138,15 @@ def test_a_registry_shows_readme():
     assert all(link.startswith(("https://", "#")) for link in links)
     assert shown.count("<pre") == 7
     assert "<!--" not in shown
+
+
+def test_where_playwright_s_node_does_not_start_a_test_is_skipped_and_says_how_to_get_it(monkeypatch):
+    monkeypatch.setenv("PLAYWRIGHT_NODEJS_PATH", sys.executable)  # which ends with an error, as without a library
+    monkeypatch.delenv("PERCEPT_OBS_MUST_RUN", raising=False)
+    monkeypatch.setattr(browsers, "_kept", {})
+    monkeypatch.setattr(needs, "playwright_lacks", needs.playwright_lacks.__wrapped__)
+    with pytest.raises(pytest.skip.Exception, match=r"apt-get install libatomic1.*SyntaxError"), browsers.playwright():
+        pass
 
 
 def test_the_link_to_binder_opens_what_binder_copies(tmp_path, monkeypatch):

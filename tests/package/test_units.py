@@ -116,7 +116,6 @@ def tuned(form, unit):
 
 
 def many(form, unit):
-    pytest.importorskip("xarray")
     over = {"gain": [2.0, 10.0], "start_y3": [0.3 / unit, 0.5 / unit], "b1": [0.4 * unit, 0.5 * unit]}
     camera, found = Camera(0.05, NOISE), {}
     for name, observer in (("gain", ibo(form)), ("filter", ekf(form))):

@@ -1,5 +1,6 @@
 """Pixels and image coordinates are each other's inverse, and a homography gives back motion and depth."""
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
@@ -91,7 +92,6 @@ def test_what_a_fisheye_did_is_undone(directions):
 
 
 def test_a_fisheye_is_that_of_opencv():
-    cv2 = pytest.importorskip("cv2")
     image = np.random.default_rng(0).uniform(-3, 3, (20, 2))
     expected = cv2.fisheye.distortPoints(image[None], FISHEYE.matrix, np.array(FISHEYE.distortion))[0]
     np.testing.assert_allclose(FISHEYE.pixels(image), expected, atol=1e-9)

@@ -37,8 +37,10 @@ IN_PYODIDE = {
 OF_THE_KERNEL = {"widgetsnbextension"}
 """Packages that come with JupyterLite's Python."""
 
-FROM_PYPI = {"ipython-pygments-lexers", "psygnal"}
-"""Packages that a reader's browser fetches from PyPI; psygnal has, besides wheels for machines, one for any."""
+FROM_PYPI = {"ipython-pygments-lexers", "psygnal", "pytz"}
+"""Packages that a reader's browser fetches from PyPI; psygnal has, besides wheels for machines, one for any.
+
+pytz is asked for by pandas before version 3."""
 
 
 FIRST, *FURTHER = sorted(notebooks())

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from zipfile import ZipFile
 
+import jinja2
 import pytest
 from lab_settings import FRONT
 from needs import missing
@@ -86,7 +87,6 @@ def test_what_cannot_be_built_is_said(tmp_path):
 
 @pytest.mark.parametrize("page", ["notebooks/02_two_observers", "notebooks/index", "guide"])
 def test_the_page_of_a_notebook_leads_to_it_and_says_where_python_comes_from(page):
-    jinja2 = pytest.importorskip("jinja2", reason="get it with: python -m pip install 'percept-obs[site]'")
     theme = {"!page.html": "{% block content %}{% endblock %}{% block footer %}{% endblock %}"}
     template = jinja2.Environment(loader=jinja2.DictLoader(theme)).from_string(
         dict(_texts(False))["_templates/page.html"]

@@ -220,5 +220,6 @@ def test_the_examples_of_the_docstrings_run(name, monkeypatch):
     families = {f.key: f.__doc__ for f in vars(module).values() if isinstance(f, Family) and f.__module__ == name}
     monkeypatch.setattr(module, "__test__", families, raising=False)  # doctest finds those of functions and classes
     found = doctest.testmod(module)
-    assert found.attempted == EXAMPLES[name], "an example is not run"
+    skipped = getattr(found, "skipped", 0)  # from Python 3.13 on they are counted among the attempted
+    assert found.attempted - skipped == EXAMPLES[name], "an example is not run"
     assert not found.failed

@@ -87,7 +87,6 @@ def test_a_filter_that_was_not_told_the_noise_takes_that_of_each_run():
 @pytest.mark.slow
 @pytest.mark.parametrize("observer", [ibo(ONE), ekf(ONE), ismo(BOTH)], ids=lambda observer: observer.name)
 def test_machine_code_says_the_same(xr, observer):
-    pytest.importorskip("numba")
     over = {"b1": [0.4, 0.5], "noise": [0.0, 0.01], "believed_b2": [0.25, 0.2]}
     fast, slow = (
         ensemble(EQ35, observer, over, 2, 5, LOSSY, {"y1": 0.0}, after=2.5, language=language)

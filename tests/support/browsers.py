@@ -3,6 +3,8 @@
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+import needs
+
 FILES = ("page", "pictures", "beside", "events", "widths")
 SCRIPTS = "\n".join(Path(__file__).with_name(f"{name}.js").read_text("utf-8") for name in FILES)
 OPTIONS = ("--no-sandbox", "--disable-gpu")
@@ -18,6 +20,9 @@ def playwright():
     if "playwright" in _kept:
         yield _kept["playwright"]
         return
+    if why := needs.playwright_lacks():
+        advice = "Debian: sudo apt-get install libatomic1 chromium-headless-shell."
+        needs.missing("chromium", f"Playwright does not start. {advice} It says: {why}")
     with sync_playwright() as own:
         yield own
 

@@ -15,6 +15,7 @@ from functools import cached_property, partial
 from types import MappingProxyType, MethodType
 
 import numpy as np
+from scipy.interpolate import PPoly
 
 
 def swinging(time):
@@ -74,6 +75,8 @@ def parts(value):
     """What a value is made of, by name; None if it has no parts."""
     if is_dataclass(value):
         return {field.name: getattr(value, field.name) for field in fields(value)}
+    if isinstance(value, PPoly):
+        return {name: getattr(value, name) for name in ("c", "x", "axis", "extrapolate")}
     if isinstance(value, BaseException):
         return vars(value) | {"args": value.args}
     if isinstance(value, Mapping):

@@ -2,6 +2,9 @@
 
 import os
 import shutil
+import subprocess
+import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -23,17 +26,24 @@ def found_chromium():
 
 
 def playwright_chromium():
-    from playwright.sync_api import sync_playwright
+    import browsers  # which looks here
 
-    with sync_playwright() as playwright:
+    with browsers.playwright() as playwright:
         path = playwright.chromium.executable_path
     return path if Path(path).exists() else None
+
+
+@cache
+def playwright_lacks():
+    """Why Playwright's own Node.js does not start, in its last words; empty where it does."""
+    said = subprocess.run([sys.executable, "-m", "playwright", "--version"], capture_output=True, text=True)
+    return (said.stderr.strip() or f"it ends with {said.returncode}").rpartition("\n")[2] if said.returncode else ""
 
 
 def missing(need, advice):
     """Skip a test that needs something which is not here, or fail it where PERCEPT_OBS_MUST_RUN names the need.
 
-    The variable holds words separated by spaces: utias, node, chromium, firefox, lighthouse, or a front end's module.
+    The variable holds words separated by spaces, such as utias, node, chromium, or the module of a front end.
     """
     if need in os.environ.get("PERCEPT_OBS_MUST_RUN", "").split():
         pytest.fail(advice)

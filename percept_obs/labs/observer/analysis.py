@@ -115,7 +115,7 @@ def _error_in_words(chosen: Chosen, run: Run, window: float) -> list[str]:
         steps = expm(J[:-1] * np.diff(run.time[at])[:, None, None])
         carried = np.eye(size) if not len(steps) else reduce(lambda before, step: step @ before, steps)
     factor = float(np.linalg.norm(carried, 2)) if np.isfinite(carried).all() else np.inf
-    roots = ", ".join(f"{root:.3g}" for root in np.linalg.eigvals(J[-1]))
+    roots = ", ".join(f"{root if root.imag else root.real:.3g}" for root in np.linalg.eigvals(J[-1]))
     share = number(factor, 2)
     does = "keeps its size" if share == "1" else f"{'shrinks' if factor < 1 else 'may grow'} to {share} of its size"
     sentences = [
