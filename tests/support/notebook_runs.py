@@ -46,17 +46,24 @@ def run(name, folder, recording=UTIAS_CUT):
 
 
 def shared(base, name, make):
-    """What the process that asked for it first made in a folder of its own; the others wait for it."""
+    """What the process that asked for it first made in a folder of its own, or its failure; the others wait for it."""
     folder, kept = base / name, base / f"{name}.pickle"
     try:
         folder.mkdir()
     except FileExistsError:
         wait_until(kept.exists, f"another process to make {name}", 900)
     else:
+        try:
+            made = make(folder)
+        except Exception as error:
+            made = AssertionError(f"{name} was not made: {error}")
         part = folder.with_suffix(".part")
-        part.write_bytes(pickle.dumps(make(folder)))
+        part.write_bytes(pickle.dumps(made))
         part.rename(kept)
-    return pickle.loads(kept.read_bytes())
+    found = pickle.loads(kept.read_bytes())
+    if isinstance(found, Exception):
+        raise found
+    return found
 
 
 def shared_run(base, name):
