@@ -28,7 +28,6 @@ from percept_obs.tracking.information import (
 )
 from percept_obs.tracking.smoothing import doubts_of
 from percept_obs.tracking.verdict import (
-    BLIND,
     REMEDY,
     TOLERANCE,
     VERDICTS,
@@ -274,7 +273,7 @@ class Run:
         form, recording = self.observer.form, self.recording
         if isinstance(recording.view, ImagingSurface):
             return one_point(form, recording)
-        return by_smoothing(form, recording, doubts_of(self.observer, recording.motion))
+        return by_smoothing(form, recording, doubts_of(self.observer, recording.motion, recording.unit))
 
     def to_pandas(self) -> Any:
         """Return the recording's table with estimates as estimated_y1, and what the observer claims as deviation_y1."""
@@ -317,7 +316,7 @@ class Run:
         known, last, view = self.recording.motion.known(self.time[-1:]), self.estimate[-1], self.view
         said = partial(Trust, judged=view.judged, length=float(self.elapsed[-1]))
         if not np.isfinite(last).all():
-            return said("not yet" if self.unobservable.all() else "no estimate")
+            return said("no estimate")
         if not view.point_shape and not view.inverse(last) > 0:
             return said("nowhere")
         if self.recording.doubt:
@@ -423,8 +422,6 @@ class Run:
         if self.recording.truth is None or not self._known.any():
             said = VERDICTS["followed"].format(time=number(self.elapsed[-1]))
             said += "" if names else self.trust(tolerance).clause
-        elif self.unobservable.all():
-            said = BLIND["not yet"].format(window=number(self.elapsed[-1]), judged=self.view.judged).removeprefix("; ")
         else:
             said = in_words(self.outcome(tolerance, *names), ", ".join(names) or self.view.judged, tolerance, names)
         return said + self._resets_and_gaps()

@@ -70,7 +70,6 @@ BLIND = MappingProxyType(
         ),
         "vague": "; do not trust the estimate: {window} s of samples tell {judged} only to within {within} (2σ)",
         "hidden": "; do not trust the estimate: {window} s of samples tell nothing of {judged}",
-        "not yet": "; not observable yet: {window} s of samples do not tell {judged}",
         "no estimate": "; do not trust it: there is no estimate at the end",
         "nowhere": "; do not trust the estimate: it ends infinitely far away or behind the camera",
         "unexcited": ", hardly excited since {begin} s",
@@ -128,9 +127,8 @@ class Trust:
     "contradicted" (longer windows tell something else, so that the motion is not as it is known), "drifting" (the scale
     of the motion drifts), "unexplained" (what is left of the samples is no noise), "doubted" (the recording has a
     doubt), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the estimate is infinitely far away
-    or behind the camera), "not yet" (the observer never had one, for nothing was observable) or "no estimate".  The
-    difference is the estimate's relative distance to the information's, and NaN where that is vague or contradicted;
-    `claimed` is the relative standard deviation that the observer claims.
+    or behind the camera) or "no estimate".  The difference is the estimate's relative distance to the information's,
+    and NaN where that is vague or contradicted; `claimed` is the relative standard deviation that the observer claims.
     """
 
     kind: str
