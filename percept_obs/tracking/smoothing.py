@@ -110,7 +110,7 @@ def usual_start(form: PartitionedSystem, recording: Recording, noise: Array) -> 
     view, measured = form.view, positions(form, form.measured)
     usual, guess = (view.usual, view.guess) if isinstance(view, StateView) else ({}, {})
     motion, samples = recording.motion, outputs_of(form, recording)
-    known = motion.known(recording.time) / float(recording.unit) ** np.array(motion.lengths)
+    known = motion.known(recording.time) / np.float_power(recording.unit, motion.lengths)
     found = vectorised(motion.parameters, [sp.sympify(guess.get(s, 0)) for s in form.coordinates])
     states = np.stack(found(*np.broadcast_to(known, (len(samples), known.shape[1])).T), axis=-1) / recording.scale
     first = samples[np.isfinite(samples).argmax(axis=0), range(len(measured))]

@@ -79,8 +79,8 @@ BLIND = MappingProxyType(
             "apart, so that the motion is not as it is known"
         ),
         "unexplained": (
-            "; do not trust the estimate: no place of the point explains the samples to within their noise, so that "
-            "something is not as it is known; `diagnose` looks for the reason"
+            "; do not trust the estimate: no place of the point explains the samples to within their noise; what is "
+            "left may move {judged} by {apart}, and `diagnose` looks for the reason"
         ),
         "drifting": (
             "; do not trust the estimate: the samples tell that the length of your translation drifts by {apart} or "
@@ -125,10 +125,11 @@ class Trust:
 
     The kind is "agrees" (with what the samples tell), "differs", "wide" (the observer claims more than the tolerance),
     "contradicted" (longer windows tell something else, so that the motion is not as it is known), "drifting" (the scale
-    of the motion drifts), "unexplained" (what is left of the samples is no noise), "doubted" (the recording has a
-    doubt), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the estimate is infinitely far away
-    or behind the camera) or "no estimate".  The difference is the estimate's relative distance to the information's,
-    and NaN where that is vague or contradicted; `claimed` is the relative standard deviation that the observer claims.
+    of the motion drifts), "unexplained" (what is left of the samples is no noise, and may move it), "doubted" (the
+    recording has a doubt), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the estimate is
+    infinitely far away or behind the camera) or "no estimate".  The difference is the estimate's relative distance to
+    the information's, and NaN where that is vague or contradicted; `claimed` is the relative standard deviation that
+    the observer claims.
     """
 
     kind: str
