@@ -23,7 +23,7 @@ PASSES = 4
 def many_points(form: PointsForm, recording: Recording) -> Fit:
     """Least squares on the images: B C (Phi x + c) = 0 for the state x at the end, over the distance of each point."""
 
-    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, bool, float]:
+    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, float, float]:
         every = max(1, (len(recording.time) - first) * form.states**2 // LARGEST_TABLE)
         used = np.arange(len(recording.time) - 1, first - 1, -every)  # backwards from the end
         outputs = recording.outputs[used]
@@ -53,9 +53,10 @@ def many_points(form: PointsForm, recording: Recording) -> Fit:
         known_noise = math.sqrt(own + shared * max(1.0, 3 * form.points / form.states))
         left = math.sqrt(max(residual, 0.0) / max(free, 1))
         if free < 1 or not (depth[seen] > 0).all():
-            return x, math.inf, True, 0.0
+            return x, math.inf, 0.0, 0.0
         worst = _worst(form, x, values, vectors, determined, max(left, finest, known_noise))
-        return x, worst, not known_noise or looks_like_noise(left, 0.0, known_noise), 0.0
+        alike = not known_noise or looks_like_noise(left, 0.0, known_noise)
+        return x, worst, 0.0 if alike else worst * math.sqrt(free), 0.0
 
     return fit
 

@@ -180,7 +180,7 @@ class Plan:
         arriving = np.full(len(grid), -1)
         arriving[index] = np.arange(len(time))
         known, motion = self._known(columns, grid)
-        known = known / self.scenario.unit ** np.array([*self.believed.lengths, *(0 for _ in surface.parameters)])
+        known = known / np.float_power(self.scenario.unit, [*self.believed.lengths, *(0 for _ in surface.parameters)])
         gains = self._gains(columns)
         places = list(loop.statistics.measured)
         start, corrects = self._start(columns, begins[:, places] + noise[film, 0], gains, known[motion, 0])

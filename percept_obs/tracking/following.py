@@ -228,7 +228,7 @@ def _once_observable(observer: Observer, grid: TimeGrid, believed: Motion, langu
     form, recording, count = observer.form, grid.recording, len(grid.recording.time)
     variance = next(gain.value for gain in observer.gains if gain.name == "noise_variance")
     known, noise = replace(recording, motion=believed), np.full(len(form.measured), variance)
-    first, belief = once_observable(form, known, noise, doubts_of(observer, believed)) or (count, None)
+    first, belief = once_observable(form, known, noise, doubts_of(observer, believed, recording.unit)) or (count, None)
     late = replace(
         observer, unobservable=(Unobservable(sp.false, f"the samples did not tell {recording.view.judged} yet"),)
     )

@@ -87,7 +87,8 @@ def known_signals(motion: Motion, view: View, times: Array, unit: float = 1.0) -
     rows = motion.known(times) if motion.constants is None else motion.constants
     shape = [view.values[symbol] for symbol in view.parameters]
     rows = np.hstack([rows, np.tile(np.array(shape, dtype=float), (len(rows), 1))]) if shape else rows
-    return rows if unit == 1 else rows / unit ** np.array([*motion.lengths, *view.lengths[len(view.coordinates) :]])
+    powers = [*motion.lengths, *view.lengths[len(view.coordinates) :]]
+    return rows if unit == 1 else rows / np.float_power(unit, powers)
 
 
 def _bridged(recording: Recording, hold: Hold) -> Array:

@@ -46,16 +46,17 @@ class Information:
     """Least-squares estimate of the coordinates at the last sample, from the samples of the last seconds.
 
     The deviation is the relative standard deviation of what is judged, infinite where samples tell nothing; `unexcited`
-    are the seconds at the end in which they do.  What is left of all samples is explained if it looks like noise.  The
-    drift is the change of the known translation's scale, over the whole recording, of which the
-    samples leave no doubt.  Estimates from longer windows agree if the motion is as it is known.
+    are the seconds at the end in which they do.  What is `left` of all samples, if it does not look like noise, moves
+    what is judged by this relative error at most; it is infinite where that is not known.  The drift is the change of
+    the known translation's scale, over the whole recording, of which the samples leave no doubt.  Estimates from longer
+    windows agree if the motion is as it is known.
     """
 
     estimate: Array
     deviation: float
     window: float
     unexcited: float
-    explained: bool = True
+    left: float = 0.0
     drift: float = 0.0
     longer: tuple[Information, ...] = ()
 
@@ -73,9 +74,9 @@ class Information:
         return math.sqrt(found)
 
 
-Fit = Callable[[int, list[Array]], tuple[Array, float, bool, float]]
+Fit = Callable[[int, list[Array]], tuple[Array, float, float, float]]
 """Least squares on the samples from one on, from the best of some initial guesses; returns coordinates at the end,
-their relative deviation, False if it is of all samples and leaves more than noise, and the drift of scale that they
+their relative deviation, the relative error that is left if it is of all samples, and the drift of scale that they
 surely tell."""
 
 
@@ -100,17 +101,17 @@ def information_at_end(fit: Fit, elapsed: Array, guess: Array) -> Information:
     while True:
         first = count - length
         window = float(elapsed[-1] - elapsed[first])
-        estimate, deviation, explained, drift = fit(first, guesses)
+        estimate, deviation, left, drift = fit(first, guesses)
         if deviation >= LIMITS.nothing and not found:
             unexcited = window
         elif deviation < LIMITS.nothing:
             guesses = [*guesses[:1], estimate]
         if found or deviation <= LIMITS.enough or first == 0:
-            found.append(Information(estimate, deviation, window, unexcited, explained, drift))
+            found.append(Information(estimate, deviation, window, unexcited, left, drift))
         if len(found) > LIMITS.longer or first == 0:
             if first > 0:  # one more fit, of all samples: a short window hides what is wrong
-                _, _, explained, _ = fit(0, guesses)
-            return replace(found[0], explained=explained, longer=tuple(found[1:]))
+                _, _, left, _ = fit(0, guesses)
+            return replace(found[0], left=left, longer=tuple(found[1:]))
         length = min(2 * length, count)
 
 
@@ -129,12 +130,12 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
     known_noise = recording.effective_variance or 0.0
     at_end = recording.motion.known(recording.time[-1:])
 
-    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, bool, float]:
+    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, float, float]:
         samples, time = recording.outputs[first:, columns], recording.time[first:]
         seen = np.isfinite(samples)
         free = int(seen.sum()) - size
         if free < 1 or not seen.any(axis=0).all():
-            return np.full(size, np.nan), math.inf, True, 0.0
+            return np.full(size, np.nan), math.inf, 0.0, 0.0
         images = images_backwards(recording, first, columns)
         plain = np.zeros(size + len(DOUBTS))
         plain[places] = [column[np.isfinite(column)][-1] for column in samples.T]
@@ -160,14 +161,18 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         estimate, drift = start[:size] / scale, max(0.0, abs(float(start[size])) - 2 * deviations[size])
         deviation = relative_deviation(view, estimate, deviations[:size] / scale, at_end)
         if first > 0:
-            return estimate, deviation, True, drift
+            return estimate, deviation, 0.0, drift
 
         def residuals_alone(x: Array) -> Array:  # without the doubts, which hide a wrong focal length as well
             return np.where(seen, images(np.append(x, plain[size:])) - samples, 0.0).ravel() / finest
 
         alone = least_squares(residuals_alone, start[:size], x_scale="jac", diff_step=LIMITS.small, max_nfev=50)
         rest = residuals_alone(alone.x).reshape(samples.shape) * finest
-        return estimate, deviation, _explained(rest, free, recording), drift
+        if not (left := _left(rest, free, recording)):
+            return estimate, deviation, 0.0, drift
+        one = np.array([_deviation(alone.jac, k) for k in range(size)])
+        moved = relative_deviation(view, alone.x / scale, one / scale, at_end) * left / finest
+        return estimate, deviation, moved, drift
 
     return fit
 
@@ -179,13 +184,13 @@ def by_smoothing(form: PartitionedSystem, recording: Recording, doubt: Mapping[s
     """
     known_noise, at_end = recording.effective_variance or 0.0, recording.motion.known(recording.time[-1:])
 
-    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, bool, float]:
+    def fit(first: int, guesses: list[Array]) -> tuple[Array, float, float, float]:
         part = recording.between(recording.time[first], recording.time[-1])
         samples, measured = outputs_of(form, part), positions(form, form.measured)
         seen, size = np.isfinite(samples), len(form.coordinates)
         free = int(seen.sum()) - size
         if free < 1 or not seen.any(axis=0).all():
-            return np.full(size, np.nan), math.inf, True, 0.0
+            return np.full(size, np.nan), math.inf, 0.0, 0.0
         finest = max(LIMITS.finest * float(np.abs(samples[seen]).max()), math.sqrt(known_noise)) or LIMITS.finest
         noise, larger = np.full(len(measured), finest), 1.0
         for _ in range(3):
@@ -195,24 +200,26 @@ def by_smoothing(form: PartitionedSystem, recording: Recording, doubt: Mapping[s
             if not larger > 1.2:  # chance makes as much of a hundred samples
                 break
         if not found.arrived or (isinstance(form.view, StateView) and not shows_scale(form, part, noise**2, doubt)):
-            return estimate, math.inf, True, 0.0
+            return estimate, math.inf, 0.0, 0.0
         rest = np.where(seen, samples - found.states[:, measured], 0.0)
         deviations = np.sqrt(np.maximum(np.diagonal(found.covariance), 0.0)) * _inflation(rest / noise, part.time)
         deviation = relative_deviation(recording.view, estimate, deviations, at_end)
-        return estimate, deviation, _explained(rest, int(seen.sum()), recording), 0.0
+        left = _left(rest, int(seen.sum()), recording)
+        return estimate, deviation, math.inf if left else 0.0, 0.0
 
     return fit
 
 
-def _explained(rest: Array, free: int, recording: Recording) -> bool:
-    """Return True if residuals, 0 where a sample was lost, look like a recording's noise; few far ones are left out."""
+def _left(rest: Array, free: int, recording: Recording) -> float:
+    """Norm of residuals, 0 where a sample was lost, or 0 if they look like noise; few far ones are left out."""
     size = np.abs(rest)
     usual = float(np.median(size[size > 0])) if size.any() else 0.0
     near = np.where(size <= LIMITS.wild * usual, rest, 0.0)
     near = near if np.count_nonzero(near) > (1 - LIMITS.most_wild) * np.count_nonzero(rest) else rest
     squares, noise = float((near**2).sum()), recording.effective_variance
     white = float((near[1:] * near[:-1]).sum()) / max(squares, np.finfo(float).tiny)
-    return looks_like_noise(math.sqrt(squares / free), white, None if noise is None else math.sqrt(noise))
+    alike = looks_like_noise(math.sqrt(squares / free), white, None if noise is None else math.sqrt(noise))
+    return 0.0 if alike else math.sqrt(squares)
 
 
 def _inflation(residuals: Array, time: Array) -> float:

@@ -89,10 +89,14 @@ class Smoothed:
         return math.sqrt(max(float(self.covariance[-1, -1]), 0.0)) / inverse if inverse > 0 else math.inf
 
 
-def doubts_of(observer: Any, motion: Motion) -> dict[str, float]:
-    """Densities of the noise of a motion: those that are known, or that an observer assumes of a signal if larger."""
+def doubts_of(observer: Any, motion: Motion, unit: float) -> dict[str, float]:
+    """Densities of the noise of a motion: those that are known, or that an observer assumes of a signal if larger.
+
+    The observer's are by a unit of length.
+    """
     gains = {gain.name: gain.value for gain in observer.gains}
-    assumed = (gains.get("velocity_noise" if length else "turning_noise", 0.0) for length in motion.lengths)
+    of = {0: gains.get("turning_noise", 0.0), 1: gains.get("velocity_noise", 0.0) * unit**2}
+    assumed = (of[length] for length in motion.lengths)
     least = dict(zip((symbol.name for symbol in motion.parameters), assumed, strict=True))
     return {n: max(least.get(n, 0.0), motion.densities.get(n, 0.0)) for n in least | {**motion.densities}}
 
@@ -101,15 +105,18 @@ def usual_start(form: PartitionedSystem, recording: Recording, noise: Array) -> 
     """States at the samples, shape (K, n), from which a smoother starts, and the covariance of the first of them.
 
     They are the samples, the view's guess of the scale, and 0; the noise has the variance of each measured output.
+    What is guessed or usual is so by the recording's unit of length.
     """
     view, measured = form.view, positions(form, form.measured)
     usual, guess = (view.usual, view.guess) if isinstance(view, StateView) else ({}, {})
-    known, samples = recording.motion.known(recording.time), outputs_of(form, recording)
-    found = vectorised(recording.motion.parameters, [sp.sympify(guess.get(s, 0)) for s in form.coordinates])
-    states = np.stack(found(*np.broadcast_to(known, (len(samples), known.shape[1])).T), axis=-1)
+    motion, samples = recording.motion, outputs_of(form, recording)
+    known = motion.known(recording.time) / np.float_power(recording.unit, motion.lengths)
+    found = vectorised(motion.parameters, [sp.sympify(guess.get(s, 0)) for s in form.coordinates])
+    states = np.stack(found(*np.broadcast_to(known, (len(samples), known.shape[1])).T), axis=-1) / recording.scale
     first = samples[np.isfinite(samples).argmax(axis=0), range(len(measured))]
     states[:, measured] = np.where(np.isfinite(samples), samples, first)
     deviations = np.array([usual.get(symbol, 1.0 if usual else LIMITS.wide) for symbol in form.coordinates])
+    deviations /= recording.scale
     deviations[measured] = np.sqrt(noise)
     return states, np.diag(deviations**2)
 

@@ -70,7 +70,6 @@ BLIND = MappingProxyType(
         ),
         "vague": "; do not trust the estimate: {window} s of samples tell {judged} only to within {within} (2σ)",
         "hidden": "; do not trust the estimate: {window} s of samples tell nothing of {judged}",
-        "not yet": "; not observable yet: {window} s of samples do not tell {judged}",
         "no estimate": "; do not trust it: there is no estimate at the end",
         "nowhere": "; do not trust the estimate: it ends infinitely far away or behind the camera",
         "unexcited": ", hardly excited since {begin} s",
@@ -80,8 +79,8 @@ BLIND = MappingProxyType(
             "apart, so that the motion is not as it is known"
         ),
         "unexplained": (
-            "; do not trust the estimate: no place of the point explains the samples to within their noise, so that "
-            "something is not as it is known; `diagnose` looks for the reason"
+            "; do not trust the estimate: no place of the point explains the samples to within their noise; what is "
+            "left may move {judged} by {apart}, and `diagnose` looks for the reason"
         ),
         "drifting": (
             "; do not trust the estimate: the samples tell that the length of your translation drifts by {apart} or "
@@ -126,11 +125,11 @@ class Trust:
 
     The kind is "agrees" (with what the samples tell), "differs", "wide" (the observer claims more than the tolerance),
     "contradicted" (longer windows tell something else, so that the motion is not as it is known), "drifting" (the scale
-    of the motion drifts), "unexplained" (what is left of the samples is no noise), "doubted" (the recording has a
-    doubt), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the estimate is infinitely far away
-    or behind the camera), "not yet" (the observer never had one, for nothing was observable) or "no estimate".  The
-    difference is the estimate's relative distance to the information's, and NaN where that is vague or contradicted;
-    `claimed` is the relative standard deviation that the observer claims.
+    of the motion drifts), "unexplained" (what is left of the samples is no noise, and may move it), "doubted" (the
+    recording has a doubt), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the estimate is
+    infinitely far away or behind the camera) or "no estimate".  The difference is the estimate's relative distance to
+    the information's, and NaN where that is vague or contradicted; `claimed` is the relative standard deviation that
+    the observer claims.
     """
 
     kind: str

@@ -44,7 +44,6 @@ from percept_obs.studies.comparison import compare
 from percept_obs.studies.consistency import claimed_distance
 from percept_obs.studies.least_squares import moving_window_least_squares
 from percept_obs.studies.sensitivity import sensitivity
-from percept_obs.studies.tuning import tune_by_likelihood
 from percept_obs.system.motion import TIME
 
 UNITS = {"mm": 1000.0, "km": 0.001, "feet": 3.28084}
@@ -107,12 +106,6 @@ def all_of(form, unit):
         few = [replace(each, outputs=each.outputs[:, :1], names=("y1",), signal=None) for each in few]
     found = all_observers(few, candidates={make: make.candidates[:2] for make in (ekf, de_luca, spica)})
     return numbers(found.table, unit) | {"gains": [*found.table["gains"]], "start": found.start["y3"] * unit}
-
-
-def tuned(form, unit):
-    ranges = {"noise_variance": (1e-6, 1e-4), "hidden_process_noise": (1e-6, 1e-2)}
-    found = tune_by_likelihood([seen(unit)], ekf(form), ranges, follow)
-    return {"gains": np.array([*found.gains.values()]), "likelihood": np.array(found.log_likelihood)}
 
 
 def many(form, unit):
@@ -213,7 +206,7 @@ def test_an_observer_obeys_the_law(make):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("measured", OUTPUTS, ids=len)
-@pytest.mark.parametrize("study", [pytest.param(tuned, marks=pytest.mark.night), *STUDIES])
+@pytest.mark.parametrize("study", STUDIES)
 def test_a_study_obeys_the_law(study, measured):
     """The least squares of trust have directions that samples hardly tell, and differ by more than rounding."""
     bound = 1e-5 if study is trusted else 1e-9
@@ -226,10 +219,8 @@ def test_a_filter_and_its_bound_obey_the_law(study, measured):
     assert largest(partial(study, SYSTEMS[affine].partition(*measured))) < 1e-9
 
 
-@pytest.mark.night
 @pytest.mark.slow
-@pytest.mark.parametrize("section", ["IV.A", "IV.B", "VI.C"])
-@pytest.mark.parametrize("make", [ekf, ibo, ismo], ids=lambda make: make.key)
+@pytest.mark.parametrize(("make", "section"), [(ekf, "IV.A"), (ibo, "IV.B"), (ismo, "VI.C")])
 def test_structure_and_motion_obey_the_law(make, section):
     plain = chwa2019_experiment(section)
 
@@ -327,6 +318,6 @@ if __name__ == "__main__":  # prints the largest deviations
             found = largest(partial(run_of, make, varying, form))
             print(*form.measured, scene(1.0, varying).name, make.key, f"{found:.1e}", flush=True)
     for measured in OUTPUTS:
-        for study in (consistent, bounded, tuned, *STUDIES):
+        for study in (consistent, bounded, *STUDIES):
             found = largest(partial(study, SYSTEMS[affine].partition(*measured)))
             print(*measured, study.__name__, f"{found:.1e}", flush=True)

@@ -10,8 +10,7 @@ import pickle
 import subprocess
 import sys
 import warnings
-from functools import cache, partial
-from multiprocessing import get_context
+from functools import cache
 
 import bad_calls
 import equal_values
@@ -186,14 +185,3 @@ def test_a_function_without_a_name_copies_and_pickle_says_that_it_cannot():
     assert copy.deepcopy(motion).known(2.0).tolist() == motion.known(2.0).tolist()
     with pytest.raises((pickle.PicklingError, AttributeError), match="lambda"):
         pickle.dumps(motion)
-
-
-@pytest.mark.night
-@pytest.mark.slow
-def test_recordings_are_followed_in_processes():
-    recordings = [po.record(po.scenarios.ma2005_eq35(), 2, NOISY, seed) for seed in range(3)]
-    follow = partial(po.track, observer=po.ekf(BOTH))
-    with get_context("spawn").Pool(2) as pool:
-        runs = pool.map(follow, recordings)
-    for run, recording in zip(runs, recordings, strict=True):
-        assert run.estimate.tobytes() == follow(recording).estimate.tobytes()

@@ -244,7 +244,6 @@ def test_the_linear_view_is_linear_and_moves_as_the_points_do(choice, drawn):
     np.testing.assert_allclose(found[:3], at[d_s] * velocity, rtol=1e-9, atol=1e-9)
 
 
-@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("corollary", COROLLARIES, ids=lambda c: str(c.number))
 def test_sensitivity_against_a_finite_difference(corollary):

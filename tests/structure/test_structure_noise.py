@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from percept_obs import record
-from percept_obs.structure import PatchDepth, grid_patch
 from percept_obs.structure.competitors import competitors, scale_spread
 from percept_obs.structure.scenarios import chwa2019_experiment
 
@@ -16,19 +15,14 @@ def spread_of(table, name, column="decibels"):
     return rows["std"]
 
 
-@pytest.fixture(scope="module")
-def exact():
-    return scale_spread()
-
-
-@pytest.mark.night
-def test_scatter_with_an_exact_inverse_depth(exact):
+def test_scatter_with_an_exact_inverse_depth():
     """Chatter-free observers pass on noise in proportion; filters trade it against how fast they follow."""
+    exact = scale_spread((100.0, 40.0))
     layer = spread_of(exact, "ISMO, boundary layer")
-    for decibels, expected in ((100, 0.065), (80, 0.66), (60, 6.5), (40, 62)):
+    for decibels, expected in ((100, 0.065), (40, 62)):
         assert layer[decibels] == pytest.approx(expected, rel=0.1)
     kalman, extended = (spread_of(exact, name) for name in ("Kalman filter, linear view", "EKF"))
-    for decibels, bound in ((100, 0.14), (80, 0.26), (60, 0.46), (40, 0.93)):
+    for decibels, bound in ((100, 0.14), (40, 0.93)):
         assert kalman[decibels] < bound
         assert extended[decibels] < kalman[decibels]
     assert spread_of(exact, "IBO, linear view")[40] < 0.3
@@ -38,16 +32,6 @@ def test_scatter_with_an_exact_inverse_depth(exact):
     # one gain for columns of such different sizes: the scale hardly moves
     assert exact[(exact.observer == "IBO") & (exact.decibels == 100)]["mean"].item() < 5
     assert not exact.missing.any()
-
-
-@pytest.mark.night
-def test_scatter_with_the_inverse_depth_of_a_homography(exact):
-    table = scale_spread((100.0, 40.0), depth=PatchDepth(grid_patch(0.4, 5)))
-    for name in ("ISMO, boundary layer", "ISMO, ideal switch", "EKF", "Kalman filter, linear view"):
-        assert (spread_of(table, name) > spread_of(exact, name)[[100, 40]]).all()
-    assert spread_of(table, "ISMO, boundary layer")[100] == pytest.approx(0.27, rel=0.15)
-    assert spread_of(table, "EKF")[40] < 0.2
-    assert spread_of(table, "ISMO, boundary layer")[40] > 100
 
 
 def test_scatter_grows_with_time_unless_the_slope_stays():

@@ -1,7 +1,9 @@
 """Recordings of a camera that a hand carries, clean ones and ones with mistakes, on which `diagnose` is measured."""
 
 import warnings
+from copy import deepcopy
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from distrust_study import REST, waves
@@ -38,6 +40,11 @@ ORDER = (
 
 def drawn(seed, points=5):
     """Recordings of several points by one camera, with the signal, and numbers to go on with."""
+    return deepcopy(_drawn(seed, points))
+
+
+@cache  # each mistake is made in the same ones
+def _drawn(seed, points):
     draw = np.random.default_rng(seed)
     motion = rigid(
         camera_angular_velocity=waves(draw, -draw.uniform(0.1, 0.3)),

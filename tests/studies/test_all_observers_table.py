@@ -181,7 +181,7 @@ def test_without_a_truth_and_a_filter_least_squares_stand_for_it():
     assert one_call.side_by_side.columns.tolist()[-5:] == [*claims, "cost", "remark"]
 
 
-@pytest.mark.night
+@pytest.mark.night(reason="a search of a filter's gains")
 @pytest.mark.slow
 def test_without_a_truth_the_filter_is_tuned_by_its_likelihood():
     one_call = found(BLIND, candidates=GAINS | {ekf: ekf.candidates}, after=(1.0, 2.0))
@@ -212,7 +212,7 @@ def test_without_a_truth_what_nothing_estimates_is_left_out_and_measured_distanc
 # Beside the Cramer-Rao bound.
 
 
-@pytest.mark.night
+@pytest.mark.night(reason="scatter of eight recordings of each scene")
 @pytest.mark.slow
 def test_nobody_is_below_the_bound_beyond_chance_and_only_filters_come_near_it():
     cases = compared(8, {make: make.candidates[-4:] for make in (ibo, ekf, ismo)}, real=False)

@@ -46,7 +46,6 @@ def test_a_sign_in_the_rate_chatters_in_proportion_to_the_step():
     assert 0.8 < order(errors(sliding_mode, "sign", adaptation=0), "y3") < 1.2
 
 
-@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("gamma", [20, 40])
 def test_a_sign_in_the_rate_of_the_rate_chatters_in_proportion_to_the_root_of_the_step(gamma):
@@ -63,7 +62,6 @@ def test_chatter_is_proportional_to_the_switching_gain():
     assert np.exp(np.mean(np.log(ratios))) == pytest.approx(2, rel=0.2)
 
 
-@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize("make", [range_identification, sliding_mode], ids=["Dixon", "sliding mode"])
 def test_an_adaptive_solver_is_stopped_by_the_sign_alone(make):
@@ -71,10 +69,10 @@ def test_an_adaptive_solver_is_stopped_by_the_sign_alone(make):
     assert smooth.finished
     assert smooth.time[-1] == 5
     assert smooth.evaluations[-1] < 2000
-    switching = effort(EQ35, make(BOTH, switch="sign"), 5.0, FROM_ZERO)
+    switching = effort(EQ35, make(BOTH, switch="sign"), 5.0, FROM_ZERO, most=4000)
     assert not switching.finished
     assert switching.time[-1] < 2
-    assert 20_000 <= switching.evaluations[-1] < 20_200
+    assert 4000 <= switching.evaluations[-1] < 4200
     # before it slides, it steps as the smooth one does
     assert switching.steps.max() > 1e-3
     assert np.median(switching.steps[-100:]) < 2e-4 < np.median(smooth.steps) / 10

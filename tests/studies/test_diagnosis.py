@@ -200,7 +200,7 @@ def test_a_fisheye_is_named_or_both_are_where_it_sees_too_little():
     assert {narrow.named, *narrow.findings[0].instead} == {"fisheye ignored", "distortion ignored"}
 
 
-@pytest.mark.night
+@pytest.mark.night(reason="shares of 460 recordings")
 @pytest.mark.slow
 def test_mistakes_are_named_or_the_motion_cannot_tell():
     """Twenty recordings with each mistake and 200 clean ones with ALL_SAMPLES=1."""
@@ -213,7 +213,7 @@ def test_mistakes_are_named_or_the_motion_cannot_tell():
         assert not diagnosed(clean(seed)).findings, seed
 
 
-@pytest.mark.night
+@pytest.mark.night(reason="shares of 60 pairs")
 @pytest.mark.slow
 def test_of_two_mistakes_both_are_named_or_something_is_left():
     """Sixty pairs with ALL_SAMPLES=1."""

@@ -7,7 +7,6 @@ import pytest
 from distrust_study import drawn
 from examples import BOTH, ZERO
 from refusals import refuses
-from sample_sizes import sampled
 from trust_study import posed
 
 from percept_obs import Camera, Gaussian, PerspectiveSystem, ekf, ibo, pinhole, record, rigid, scenarios, smo, track
@@ -82,11 +81,11 @@ GRID = grid(
 """Gains that are searched by the median error; they include the right ones."""
 
 
-@pytest.mark.night
+@pytest.mark.night(reason="claims over 24 recordings of each scene")
 @pytest.mark.slow
 @pytest.mark.parametrize(("form", "make"), SCENES, ids=lambda one: getattr(one, "__name__", ""))
 def test_claims_hold_and_errors_are_hardly_larger_than_those_of_tuning_by_error(form, make):
-    count, after = sampled(6, 12), (1.0, 2.0, 3.0)
+    count, after = 12, (1.0, 2.0, 3.0)
     made = [make(seed) for seed in range(3 * count)]
     tuned = tune_by_likelihood(made[:count], ekf(form), RANGES, follow).observer
     by_error = best_setting(made[:count], [ekf(form, **gains) for gains in GRID], follow, after)
@@ -117,11 +116,11 @@ def claims(choosing, reporting, follow, start_variance):
     ]
 
 
-@pytest.mark.night
+@pytest.mark.night(reason="claims over 36 recordings")
 @pytest.mark.slow
 def test_noise_of_the_velocities_explains_innovations_and_errors_with_noisy_poses():
     """Each recording has another noise of its poses, so that no setting is right for all."""
-    believed = dict(posed(seed, "noisy", sigma=0.002)[:2] for seed in range(sampled(12, 36)))
+    believed = dict(posed(seed, "noisy", sigma=0.002)[:2] for seed in range(36))
     recordings = [*believed]
     third = len(recordings) // 3
     nis, nees = claims(
@@ -133,7 +132,7 @@ def test_noise_of_the_velocities_explains_innovations_and_errors_with_noisy_pose
     assert 0.5 < nees < 2
 
 
-@pytest.mark.night
+@pytest.mark.night(reason="claims over 22 real tracks")
 @pytest.mark.slow
 def test_noise_of_the_velocities_explains_innovations_and_errors_on_real_tracks():
     tracks = load_utias(UTIAS_CUT)

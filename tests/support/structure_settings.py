@@ -32,6 +32,7 @@ OTHERS = {
     "another axis": {"unknown": ["d_s", "v_c1", "v_c3"], "ybar": [-0.2, 0.4, 0.3], "scale": 2.0},
     "the point comes too near": {"v_c": [-0.22, -0.23, 1.5], "unknown": ["d_s", "v_p1"]},
     "a drive with a speedometer": {**DRIVE, "unknown": ["d_s", "v_c1", "v_c2"]},
+    "nothing found yet": {"observers": ["layer"], "duration": 0.1},
     "crossing": {**case_of(3), "v_c": [0.0, 0.0, -0.15], "v_c_swing": [0.3, 0.3, -0.3], "duration": 4.5},
 }
 CASES = {**COROLLARIES, **OTHERS}

@@ -19,7 +19,7 @@ TIME = np.arange(0, 4, 0.01)
 POSITION, ROTATION, VELOCITY, TURNING = carried(TIME)
 IMAGES = seen(TIME)
 FORM = po.PerspectiveSystem(po.rigid(), po.pinhole()).measure("y1", "y2")
-PER_SECOND = (lambda t: CubicSpline(TIME, VELOCITY)(t)), (lambda t: CubicSpline(TIME, TURNING)(t))
+PER_SECOND = CubicSpline(TIME, VELOCITY), CubicSpline(TIME, TURNING)
 
 
 def both(make, **more):
@@ -50,7 +50,6 @@ MOTIONS = dict(
 )
 
 
-@pytest.mark.night
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
 def test_the_distance_of_a_point_is_right_to_a_percent(motion):
     for X, Y, Z in IMAGES[:3].swapaxes(1, 2):
@@ -68,7 +67,6 @@ def body(velocity, turning, times=None):
     return rigid_body(3, turning, velocity, times=times)
 
 
-@pytest.mark.night
 @pytest.mark.parametrize("form", [*both(independent), *both(body)])
 def test_many_points_move_as_they_are_seen_to(form):
     places = IMAGES[:3, 0]

@@ -49,10 +49,8 @@ def stepped(observer, start, samples, period, finer=1):
     return trace.states[::finer]
 
 
-@pytest.mark.night
 @pytest.mark.slow
-@each_form
-@pytest.mark.parametrize("switch", ["fraction", "hyperbolic tangent"])
+@pytest.mark.parametrize(("form", "switch"), [(BOTH, "fraction"), (ONE, "hyperbolic tangent")], ids=["both", "one"])
 def test_a_wide_boundary_layer_makes_the_sliding_mode_observer_linear(form, switch):
     """With s = H e in the limit it is De Luca's observer with Lambda = alpha H, and so the identifier-based one."""
     size = len(form.coordinates)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from examples import BOTH, NOISE, NOISY, ONE, OTHER, ZERO
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from sample_sizes import sampled
 from trust_study import figures
@@ -144,40 +144,6 @@ def test_points_are_judged_where_they_are_and_structure_by_all_that_is_sought():
     assert run.view.judged == "the distance, v_c2, v_c3"
 
 
-@pytest.mark.night
-@settings(max_examples=sampled(5, 20), suppress_health_check=list(HealthCheck))
-@pytest.mark.slow
-@given(
-    st.integers(0, 2**32 - 1),
-    st.integers(-10, 10),
-    st.sampled_from([0, 100, 1_700_000_000]),
-    st.sampled_from([(0.0, "zero"), (0.01, "zero"), (0.003, "first")]),
-)
-def test_neither_the_unit_of_length_nor_the_clock_changes_a_word(seed, power, clock, noise):
-    """Powers of two from 1e-3 to 1e3, which rounding does not feel."""
-    draw, scale = np.random.default_rng(seed), 2.0**power
-    A, b = 0.2 * draw.normal(size=(3, 3)), draw.uniform(-0.6, 0.6, 3)
-    place = draw.uniform(1, 4) * np.array([*draw.uniform(-0.4, 0.4, 2), 1.0])
-    found = []
-    for unit, begin in ((1.0, 0), (scale, clock)):
-        scenario = Scenario("drawn", affine(A, unit * b), unit * place, 2, pinhole(), unit=unit)
-        try:
-            recording = record(scenario, camera=Camera(EXACT, Uniform(noise[0])), seed=seed)
-        except ValueError:
-            return
-        recording = shifted(recording, begin)
-        said = {}
-        for make in OBSERVERS:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                run = track(recording, make(BOTH), {"y3": 0.5 / unit}, hold=noise[1])
-            said[make.key] = run.verdict()
-            if make.key in ("identifier_based", "extended_kalman"):
-                said[make.key + " blind"] = track(blind(recording), run.observer, {"y3": 0.5 / unit}).trust().kind
-        found.append(said)
-    assert found[0] == found[1]
-
-
 @pytest.mark.parametrize("begin", [100.0, 1.7e9])
 def test_people_are_told_times_since_the_beginning_by_any_clock(begin):
     here = record(scenarios.ma2005_eq35(), 5, Camera(0.01), seed=1)
@@ -255,7 +221,7 @@ def test_without_a_truth_no_observer_is_trusted_before_a_camera_at_rest(make, ca
     for start in (None, {"y3": 0.1}):
         run = track(recording, observer, start)
         assert not run.trust().trusted
-        assert re.search("do not trust|not observable yet", run.verdict())
+        assert "do not trust" in run.verdict()
 
 
 @pytest.mark.slow
