@@ -424,7 +424,7 @@ class Run:
             said = VERDICTS["followed"].format(time=number(self.elapsed[-1]))
             said += "" if names else self.trust(tolerance).clause
         elif self.unobservable.all():
-            said = BLIND["not yet"].format(window=number(self.elapsed[-1]), judged=self.view.judged).removeprefix("; ")
+            said = VERDICTS["not yet"].format(window=number(self.elapsed[-1]), judged=self.view.judged)
         else:
             said = in_words(self.outcome(tolerance, *names), ", ".join(names) or self.view.judged, tolerance, names)
         return said + self._resets_and_gaps()
