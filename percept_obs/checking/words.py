@@ -4,6 +4,7 @@ import difflib
 import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from itertools import takewhile
 from typing import Any
 
 import sympy as sp
@@ -192,7 +193,7 @@ class Words(Notation):
         """Leave out ends of lines where a formula goes on."""
         out: list[Token] = []
         opened: list[str] = []
-        related = False  # the present line has a left side
+        related, begins = False, 0  # the present line has a left side, and begins there
         bullets = sum(bullet(tokens, k) for k in range(len(tokens)))
         following = [len(tokens) - 1] * len(tokens)
         for k in range(len(tokens) - 2, -1, -1):
@@ -212,6 +213,7 @@ class Words(Notation):
                 related = related or token.type in ("EQUAL", "RELATION")
                 related = related and (bool(opened) or token.type not in ("_LINE", "COMMA"))
                 out.append(token)
+                begins = len(out) if token.type == "_LINE" else begins
                 continue
             after = tokens[following[k]]
             before = out[-1].type if out else "_LINE"
@@ -224,11 +226,15 @@ class Words(Notation):
                 goes_on = before in _CONTINUES - {"COMMA"} or (
                     after.type in _GOES_ON and before not in ("_LINE", "COMMA")
                 )
-                if goes_on and after.type == "MINUS" and before not in _CONTINUES and not related:
-                    told = ("a line of its own", "going on with the line before")
-                    self.refuse(two_meanings(told, "end the line before with ; or write both in one line"), after)
+                if goes_on and after.type == "MINUS" and before not in _CONTINUES:
+                    if not related:
+                        told = ("a line of its own", "going on with the line before")
+                        self.refuse(two_meanings(told, "end the line before with ; or write both in one line"), after)
+                    own = out[begins] if out[begins] not in self.known and out[begins + 1].type == "EQUAL" else None
+                    # q = ..., and below it -q y3: q is not given by itself
+                    goes_on = own not in takewhile(lambda each: each.type != "_LINE", tokens[following[k] :])
             if not goes_on:
-                related = False
+                related, begins = False, len(out) + 1
                 out.append(token)
         return out
 

@@ -181,7 +181,7 @@ def other_markers(picture: Any) -> list[str]:
             detector = aruco.ArucoDetector(aruco.getPredefinedDictionary(getattr(aruco, family)))
             numbers = detector.detectMarkers(shown)[1]
             known = 0 if numbers is None else len(np.unique(numbers))
-            ours = family == FAMILIES[0] and known and np.max(numbers) < 50
+            ours = family == FAMILIES[0] and known and np.median(numbers) < 50  # one may be read wrong
             if known >= FEWEST_MARKERS and (colours or not ours):
                 which = f"the dictionary {DICTIONARY}" if ours else f"another dictionary, {family}"
                 found.append((known, f"markers {colours}{which}"))

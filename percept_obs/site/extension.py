@@ -98,5 +98,5 @@ def _find_public(app: Any, env: Any, node: Any, content: Any) -> Any:
 def _let_keys_scroll(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
     """Let keys scroll code and tables that are wider than the page."""
     if "body" in context:
-        wide = r'<(pre|table border="1" class="dataframe"|table class="ledger"|div class="table-wrapper[^"]*")>'
+        wide = r'<(pre|table border="1" class="dataframe"|table class="(?:ledger|entry)"|div class="table-wrap[^"]*")>'
         context["body"] = re.sub(wide, r'<\1 tabindex="0">', context["body"])

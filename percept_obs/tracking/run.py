@@ -317,7 +317,7 @@ class Run:
         known, last, view = self.recording.motion.known(self.time[-1:]), self.estimate[-1], self.view
         said = partial(Trust, judged=view.judged, length=float(self.elapsed[-1]))
         if not np.isfinite(last).all():
-            return said("no estimate")
+            return said("not yet" if self.unobservable.all() else "no estimate")
         if not view.point_shape and not view.inverse(last) > 0:
             return said("nowhere")
         if self.recording.doubt:
@@ -424,6 +424,8 @@ class Run:
         if self.recording.truth is None or not self._known.any():
             said = VERDICTS["followed"].format(time=number(self.elapsed[-1]))
             said += "" if names else self.trust(tolerance).clause
+        elif self.unobservable.all():
+            said = VERDICTS["not yet"].format(window=number(self.elapsed[-1]), judged=self.view.judged)
         else:
             said = in_words(self.outcome(tolerance, *names), ", ".join(names) or self.view.judged, tolerance, names)
         return said + self._resets_and_gaps()

@@ -40,6 +40,7 @@ VERDICTS = MappingProxyType(
         "diverged": "diverged at {time} s",
         "grew": ": the estimate grew beyond all bounds",
         "followed": "followed {time} s; no truth to compare with",
+        "not yet": "not observable yet: {window} s of samples do not tell {judged}",
         "none": "not converged: there is no estimate at the end",
         "behind": "not converged: the estimate ends infinitely far away or behind the camera",
         "outside": "not converged: the {error_of} of {judged} ends at {error}, outside {tolerance}",
@@ -70,6 +71,7 @@ BLIND = MappingProxyType(
         ),
         "vague": "; do not trust the estimate: {window} s of samples tell {judged} only to within {within} (2σ)",
         "hidden": "; do not trust the estimate: {window} s of samples tell nothing of {judged}",
+        "not yet": f"; {VERDICTS['not yet']}",
         "no estimate": "; do not trust it: there is no estimate at the end",
         "nowhere": "; do not trust the estimate: it ends infinitely far away or behind the camera",
         "unexcited": ", hardly excited since {begin} s",
@@ -123,13 +125,13 @@ class Outcome:
 class Trust:
     """Trust in the last estimate without a truth.
 
-    The kind is "agrees" (with what the samples tell), "differs", "wide" (the observer claims more than the tolerance),
-    "contradicted" (longer windows tell something else, so that the motion is not as it is known), "drifting" (the scale
-    of the motion drifts), "unexplained" (what is left of the samples is no noise, and may move it), "doubted" (the
-    recording has a doubt), "vague" (they tell too little), "hidden" (they tell nothing), "nowhere" (the estimate is
-    infinitely far away or behind the camera) or "no estimate".  The difference is the estimate's relative distance to
-    the information's, and NaN where that is vague or contradicted; `claimed` is the relative standard deviation that
-    the observer claims.
+    The kind is "agrees" (with what the samples tell), "differs", "wide" (the observer claims more than the
+    tolerance), "contradicted" (longer windows tell something else, so that the motion is not as it is known),
+    "drifting" (the scale of the motion drifts), "unexplained" (what is left of the samples is no noise, and may
+    move it), "doubted" (the recording has a doubt), "vague" (they tell too little), "hidden" (they tell nothing),
+    "nowhere" (the estimate is infinitely far away or behind the camera), "not yet" (nothing was observable) or "no
+    estimate". The difference is the estimate's relative distance to the information's, and NaN where that is vague
+    or contradicted; `claimed` is the relative standard deviation that the observer claims.
     """
 
     kind: str

@@ -19,7 +19,7 @@ from percept_obs.system.derivation import Derivation
 RATE = "y1' = a13 + (a11 - a33) y1 + a12 y2 - a31 y1^2 - a32 y1 y2 + (b1 - b3 y1) y3"
 RIGID = PerspectiveSystem(MOTIONS["rigid"], pinhole())
 TURN = {w: -w for w in RIGID.parameters[:3]}
-FORMS, SLIPS, PAIRS = sampled(40, 300), sampled(20, 300), sampled(8, 100)
+FORMS, SLIPS, PAIRS = sampled(20, 300), sampled(20, 300), sampled(8, 100)
 
 
 def accepted(seeds, among):
@@ -32,7 +32,6 @@ def test_equivalent_forms_are_accepted():
     assert accepted(range(300, 330), few_cases()) == []
 
 
-@pytest.mark.night
 @pytest.mark.slow
 def test_many_equivalent_forms_are_accepted():
     assert accepted(range(FORMS), cases()) == []
@@ -165,6 +164,8 @@ def test_updates_and_resets_of_observers_are_targets():
 def test_lines_may_use_letters_of_their_own():
     assert check("q = a31 y1 + a32 y2 + a33\ny3' = -q y3 - b3 y3^2", AFFINE).right
     assert check("qq = a31 y1 + a32 y2 + a33; y3' = -qq y3 + b3 y3^2", AFFINE).right is False
+    assert check("q = a31 y1 + a32 y2 + a33 + b3 y3\n-q y3", BOTH.g).right, "q is not given by itself"
+    assert check("q = -a31 y1 - a32 y2\n- a33 - b3 y3\nq y3", BOTH.g).right, "the second line goes on with the first"
 
 
 def test_what_follows_from_a_wrong_line_is_right_from_there_on():

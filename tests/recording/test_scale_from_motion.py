@@ -137,8 +137,9 @@ def test_a_filter_with_an_imu_waits_until_its_camera_accelerates():
     assert trust.trusted
     assert "no estimate from 0 to" in run.verdict()
     run, _, trust = kept
-    assert run.verdict().endswith("no estimate from 0 to 9 s, for the samples did not tell the distance yet")
-    assert trust.kind == "no estimate"
+    assert run.verdict().startswith("not observable yet: 9 s of samples do not tell the distance")
+    assert trust.kind == "not yet"
+    assert str(trust) == "Not observable yet: 9 s of samples do not tell the distance."
 
 
 @pytest.mark.slow

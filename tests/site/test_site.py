@@ -332,7 +332,13 @@ def test_a_text_in_the_settings_cannot_end_the_script():
 
 @pytest.mark.parametrize(
     "wide",
-    ["<pre", '<table class="ledger"', '<table border="1" class="dataframe"', '<div class="table-wrapper docutils"'],
+    [
+        "<pre",
+        '<table class="ledger"',
+        '<table class="entry"',
+        '<table border="1" class="dataframe"',
+        '<div class="table-wrapper docutils"',
+    ],
 )
 def test_what_may_be_wider_than_the_page_is_scrolled_by_keys(wide):
     context = {"body": f"{wide}>"}

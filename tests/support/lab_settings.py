@@ -111,6 +111,11 @@ NUDGE = 1e-12
 """How far samples and gains are moved, relative to 1 or their size, to see how far a run carries a rounding error."""
 
 
+def _nudged(values):
+    signs = np.sign(np.random.default_rng(0).uniform(-1, 1, values.shape))
+    return values + NUDGE * signs * np.fmax(1, np.abs(values))
+
+
 def assert_follows_python(settings, told, tolerance=1e-8):
     """The page's runs of any settings are Python's, as far as numbers of 16 digits decide them.
 
@@ -124,15 +129,17 @@ def assert_follows_python(settings, told, tolerance=1e-8):
     believed = settings["believed"] and affine(settings["believed"]["A"], settings["believed"]["b"])
     ours = python_runs(settings)
     for name, run in ours.items():
-        outputs = run.recording.outputs
+        recording = run.recording
         y1, y2, inverse = settings["start"]["values"]
-        values = [y1, y2, *outputs[0, 2:], inverse]  # a size that is seen starts as it is seen
+        values = [y1, y2, *recording.outputs[0, 2:], inverse]  # a size that is seen starts as it is seen
         start = {"own": None, "zero": np.zeros(len(values)), "chosen": values}[settings["start"]["mode"]]
-        signs = np.sign(np.random.default_rng(0).uniform(-1, 1, outputs.shape))
-        nudged = replace(run.recording, outputs=outputs + NUDGE * signs * np.fmax(1, np.abs(outputs)))
+        signal = recording.signal  # what an exact hold sees in place of samples
+        nudged = replace(
+            recording, outputs=_nudged(recording.outputs), signal=signal and (lambda t, of=signal: _nudged(of(t)))
+        )
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", StepTooLong)
-            gains = {gain.name: gain.value * (1 + NUDGE) for gain in run.observer.gains}  # an exact hold has no samples
+            gains = {gain.name: gain.value * (1 + NUDGE) for gain in run.observer.gains}
             moved = track(nudged, run.observer.with_gains(**gains), start, run.hold, believed or None).estimate
         found = as_array(told[name]["estimate"], run.estimate.shape[1])
         assert found.shape == run.estimate.shape

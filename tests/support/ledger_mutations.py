@@ -34,6 +34,7 @@ def _same(one: sp.Basic, other: sp.Basic) -> bool:
     endless = one.rhs == other.rhs == sp.oo
     left, right = (relation.lhs if endless else relation.lhs - relation.rhs for relation in (one, other))
     return any(
-        sp.expand(right - factor * left) == 0 or base.is_identity(base.equal(right, factor * left), entries)
+        gap == 0 or getattr(gap, "is_ZeroMatrix", False) or base.is_identity(base.equal(right, factor * left), entries)
         for factor in factors
+        for gap in [sp.expand(right - factor * left).doit()]
     )

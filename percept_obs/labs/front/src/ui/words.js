@@ -20,6 +20,8 @@ export function verdict(run, shown, model) {
   }
   const length = shown.time.at(-1) - shown.time[0];
   if (!shown.truth) return say("followed", { time: short(length) }) + besides;
+  const never = run.gaps.length && run.error.every(Number.isNaN); // there was an estimate
+  if (never) return say("not yet", { window: short(length), judged: shown.judged }) + besides;
   const judged = { judged: shown.judged, error: run.error.at(-1), tolerance: shown.tolerance };
   return settledInWords(judged, run.settling, length, model) + besides;
 }

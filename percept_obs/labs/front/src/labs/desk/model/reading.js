@@ -101,8 +101,11 @@ function treeOf(words, terms) {
     const base = atom();
     if (!is("^")) return base;
     take("^");
+    const open = is("(") && take("(");
     const sign = is("-") && take("-") ? -1 : 1;
-    const { n, at } = take("number");
+    const { n: above, at } = take("number");
+    const n = open && is("/") && take("/") ? above / take("number").n : above;
+    if (open) take(")");
     if (!Number.isInteger(2 * n) || n > LARGEST_POWER || is("^")) throw unread(at);
     return { kind: "power", parts: [base], n: sign * n };
   }
