@@ -97,7 +97,7 @@ def read_json(file: str | os.PathLike[str]) -> Any:
     try:
         return json.loads(Path(file).read_bytes())
     except RecursionError:
-        raise ValueError("it is nested too deep; write it flatter") from None
+        raise ValueError("it cannot be read as JSON, for it is nested too deep; write it flatter") from None
     except ValueError as error:
         raise ValueError(f"it cannot be read as JSON: {error}") from None
 

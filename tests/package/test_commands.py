@@ -186,10 +186,10 @@ THE_SAME = {
 
 WITHOUT_RUNNING = "percept-obs site DIR --without-running"
 BY_OTHERS = {
-    r"sudo apt-get install python3-venv": (".ci/run", "install python3-venv"),
+    r"sudo apt-get install python3-venv( libatomic1)?": (".ci/run", "install python3-venv"),
     r"git clone": (".github/workflows/tests.yml", "actions/checkout"),
     r"cd percept_obs/labs/front|npm ci": (".ci/run", 'cd "$front" && npm ci'),
-    r"python -m venv \.venv": (".ci/run", "python3 -m venv .venv"),
+    r"python -m venv \.venv": (".ci/run", "python3 -m venv"),
     r'python -m pip install -e "\.\[dev\]"': (".github/workflows/tests.yml", 'python -m pip install -e ".[dev]"'),
     r'python -m pip install -e "\.\[course\]"': ("binder/postBuild", '".[course]"'),
     r"(python -m )?pip install (-e )?.(\.|percept-obs)\[(site|site,lite)\].": ("pyproject.toml", "[course,site,lite,"),
