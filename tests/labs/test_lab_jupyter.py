@@ -97,7 +97,8 @@ def test_python_may_be_busy_set_the_settings_and_say_what_is_wrong(browser_page,
         page.fill(control("seed number"), str(seed))
         page.wait_for_function(f"{FIRST}.shown.settings.seed === {seed}")
     # a picture is drawn before all that is said of it is computed
-    page.wait_for_function(f"{FIRST}.shown?.settings.outputs[0] === 'y2' && {FIRST}.shown.whole", timeout=120_000)
+    there = f"{FIRST}.shown?.settings.outputs[0] === 'y2' && {FIRST}.shown.whole && tests.drawn()"
+    page.wait_for_function(there, timeout=120_000)
     assert_equals_python(state(page))
     page.fill(control("seed number"), "5")
     page.wait_for_selector(".percept-obs-error:not([hidden])")

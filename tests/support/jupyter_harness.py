@@ -332,11 +332,12 @@ def lab_page(chromium: str, server: Server, home: Path, width: int = 1280, heigh
 
 
 def open_notebook(page, name: str) -> None:
-    """Show a notebook of the server's folder and wait for its kernel; in a page with JupyterLab it replaces others."""
-    if page.evaluate("Boolean(window.jupyterapp)"):
-        page.evaluate("(path) => tests.openAlone(path)", name)
-    else:
-        page.goto(f"/lab/tree/{name}?reset")
+    """Show a notebook of the server's folder alone and wait for its kernel.
+
+    JupyterLab begins anew: to close other notebooks it might ask whether to save, and wait for ever.
+    """
+    page.goto("about:blank")
+    page.goto(f"/lab/tree/{name}?reset")
     page.wait_for_selector(IDLE, timeout=60_000)
     # The page says idle too while it knows no kernel yet, and would ask for one; so ask the server.
     wait_until(lambda: kernel_is_ready(page, name), "the kernel to be ready")

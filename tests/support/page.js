@@ -165,14 +165,6 @@
 
     // JupyterLab.
 
-    async openAlone(path) {
-      const { commands } = window.jupyterapp;
-      // Whether to save is a question that nobody else answers, and that would wait for ever.
-      const answering = setInterval(() => document.querySelector(".jp-Dialog button.jp-mod-warn")?.click(), 50);
-      await commands.execute("application:close-all");
-      clearInterval(answering);
-      await commands.execute("docmanager:open", { path, factory: "Notebook" });
-    },
     allRan() {
       const prompts = [...document.querySelectorAll(".jp-CodeCell .jp-InputPrompt")];
       return prompts.length > 0 && prompts.every((prompt) => /\[\d+\]/.test(prompt.textContent));
