@@ -7,6 +7,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read by numpy; threads onl
 import gc
 import math
 import shutil
+import signal
 import sys
 from collections import Counter
 from functools import cache, partial
@@ -20,6 +21,9 @@ from needs import found_chromium, missing
 from sample_sizes import sampled
 
 sys.modules.setdefault("rfc3987_syntax", None)  # jsonschema does without its grammar, which takes 5 s of each process
+signal.signal(
+    signal.SIGINT, signal.default_int_handler
+)  # in the background it is ignored, and by programs started here
 gc.disable()  # until all is collected, or what the tests' modules make is looked through again and again
 os.environ["MPLBACKEND"] = "Agg"
 # Kernels and servers with a home of their own take loops in machine code from here too.

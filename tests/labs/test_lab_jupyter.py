@@ -78,6 +78,7 @@ RUN_ALL = ".lm-Menu-item[data-command='runmenu:run-all']"
 FIRST = "[...window.perceptObsLabs][0]"
 
 
+@pytest.mark.night  # on a busy machine the kernel's settings and those of the hand do not come to rest in two minutes
 def test_python_may_be_busy_set_the_settings_and_say_what_is_wrong(browser_page, folder):
     page = browser_page
     cells = [

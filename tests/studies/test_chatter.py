@@ -62,6 +62,7 @@ def test_chatter_is_proportional_to_the_switching_gain():
     assert np.exp(np.mean(np.log(ratios))) == pytest.approx(2, rel=0.2)
 
 
+@pytest.mark.night  # with fewer evaluations the solver has not begun to slide
 @pytest.mark.slow
 @pytest.mark.parametrize("make", [range_identification, sliding_mode], ids=["Dixon", "sliding mode"])
 def test_an_adaptive_solver_is_stopped_by_the_sign_alone(make):
@@ -69,10 +70,10 @@ def test_an_adaptive_solver_is_stopped_by_the_sign_alone(make):
     assert smooth.finished
     assert smooth.time[-1] == 5
     assert smooth.evaluations[-1] < 2000
-    switching = effort(EQ35, make(BOTH, switch="sign"), 5.0, FROM_ZERO, most=4000)
+    switching = effort(EQ35, make(BOTH, switch="sign"), 5.0, FROM_ZERO)
     assert not switching.finished
     assert switching.time[-1] < 2
-    assert 4000 <= switching.evaluations[-1] < 4200
+    assert 20_000 <= switching.evaluations[-1] < 20_200
     # before it slides, it steps as the smooth one does
     assert switching.steps.max() > 1e-3
     assert np.median(switching.steps[-100:]) < 2e-4 < np.median(smooth.steps) / 10
