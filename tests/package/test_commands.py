@@ -316,7 +316,7 @@ def at_work(process):
 
 BEGUN = {
     "percept-obs film film.mp4": lambda process: process.cpu_times().user > 0.2,  # while it is imported
-    "percept-obs compare": lambda process: process.cpu_times().user > 4,
+    "percept-obs compare --seeds 300": lambda process: process.cpu_times().user > 4,
     "percept-obs check": lambda process: len(at_work(process)) > 1 or os.cpu_count() == 1,
 }
 """Command lines, and when they are stopped."""
