@@ -232,7 +232,8 @@ class Words(Notation):
                         self.refuse(two_meanings(told, "end the line before with ; or write both in one line"), after)
                     own = out[begins] if out[begins] not in self.known and out[begins + 1].type == "EQUAL" else None
                     # q = ..., and below it -q y3: q is not given by itself
-                    goes_on = own not in takewhile(lambda each: each.type != "_LINE", tokens[following[k] :])
+                    below = takewhile(lambda each: each.type != "_LINE", tokens[following[k] :])
+                    goes_on = own is None or own not in below
             if not goes_on:
                 related, begins = False, len(out) + 1
                 out.append(token)
