@@ -101,7 +101,6 @@ def test_each_chart_says_in_words_what_it_shows(fresh, kind):
         assert all(part in label for part in parts), label
 
 
-@pytest.mark.night
 def test_every_control_is_reached_and_moved_by_keyboard(browser, kind):
     page = opened(browser, MAKE[kind](**WIDE_OPEN[kind]))
     page.wait_for_function(DRAWN)

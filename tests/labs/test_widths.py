@@ -17,7 +17,6 @@ LABS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LABS)
-@pytest.mark.night
 def test_a_saved_lab_fits_its_window(browser, tmp_path, name):
     page = browser.new_page(offline=True)
     LABS[name]().save(tmp_path / "lab.html")

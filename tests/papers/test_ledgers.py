@@ -113,7 +113,6 @@ def test_every_entry_says_how_it_is_known(known):
             assert entry.expected in (Verdict.HOLDS, Verdict.NOT_CHECKABLE)
 
 
-@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("entry", "letters"),
@@ -196,7 +195,6 @@ def test_a_verdict_that_is_not_the_recorded_one_is_told(two_entries):
     assert "recorded: holds" in papers.report(two_entries)
 
 
-@pytest.mark.night
 @pytest.mark.slow
 def test_further_processes_find_the_same():
     ledger = Ledger("a part", tuple(replace(entry) for entry in MA2005.search("derived").entries))
