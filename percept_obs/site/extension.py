@@ -98,9 +98,5 @@ def _find_public(app: Any, env: Any, node: Any, content: Any) -> Any:
 def _let_keys_scroll(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
     """Let keys scroll code and tables that are wider than the page."""
     if "body" in context:
-<<<<<<< HEAD
         wide = r'<(pre|table border="1" class="dataframe"|table class="(?:ledger|entry)"|div class="table-wrap[^"]*")>'
-=======
-        wide = r'<(pre|table (?:border="1" )?class="(?:dataframe|ledger|entry)"|div class="table-wrapper[^"]*")>'
->>>>>>> eef83189 (Hold in every run what was left to the night: fewer samples, shorter films and runs; take out what others hold)
         context["body"] = re.sub(wide, r'<\1 tabindex="0">', context["body"])

@@ -330,12 +330,8 @@ def test_a_text_in_the_settings_cannot_end_the_script():
     assert "</script><script>" not in place_of(state)
 
 
-WRAPPED = '<div class="table-wrapper docutils"'
-
-
 @pytest.mark.parametrize(
     "wide",
-<<<<<<< HEAD
     [
         "<pre",
         '<table class="ledger"',
@@ -343,9 +339,6 @@ WRAPPED = '<div class="table-wrapper docutils"'
         '<table border="1" class="dataframe"',
         '<div class="table-wrapper docutils"',
     ],
-=======
-    ["<pre", *(f"<table {it}" for it in ('class="ledger"', 'class="entry"', 'border="1" class="dataframe"')), WRAPPED],
->>>>>>> eef83189 (Hold in every run what was left to the night: fewer samples, shorter films and runs; take out what others hold)
 )
 def test_what_may_be_wider_than_the_page_is_scrolled_by_keys(wide):
     context = {"body": f"{wide}>"}
