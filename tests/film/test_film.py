@@ -45,6 +45,7 @@ def errors(film, truth, board):
 @pytest.mark.slow
 def test_the_camera_is_found(filmed):
     film, truth = filmed
+    assert not film.findings
     path = film.path.at(film.seen.poses.time)
     np.testing.assert_allclose(path.time, truth.time, atol=1e-6)
     assert abs(film.camera.focal[0] / truth.camera.focal[0] - 1) < min(0.03, 3 * film.focal_deviation)
@@ -112,8 +113,6 @@ def test_distances_are_drawn_in(filmed, tmp_path):
 @pytest.mark.slow
 def test_known_poses_need_no_board(cache, tmp_path):
     path, truth = quick_film(3, tmp_path, duration=4.0, rate=8, boards=0)
-    with pytest.raises(ValueError, match=r"0 of 32 pictures .* show 8 corners of the board, .*poses="):
-        read_film(path)
     with pytest.raises(ValueError, match="no camera; give also camera="):
         read_film(path, poses=truth.poses)
     film = read_film(path, camera=truth.camera, poses=truth.poses)
@@ -123,7 +122,7 @@ def test_known_poses_need_no_board(cache, tmp_path):
 
 @pytest.mark.slow
 def test_a_film_that_was_held_upright_stands_upright(cache, tmp_path):
-    path, truth = quick_film(5, tmp_path, size=(360, 640), rate=8, upside_down=True, uneven=0.4)
+    path, truth = quick_film(5, tmp_path, size=(360, 640), rate=8, upside_down=True, uneven=0.4, duration=4.0)
     film = read_film(path)
     assert film.video.size == (360, 640)
     assert np.median(errors(film, truth, board=True)) < 0.03

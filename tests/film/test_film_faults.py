@@ -156,7 +156,10 @@ def test_a_film_of_a_few_pictures_is_refused():
         find_faults(film.time, np.nan_to_num(film.pixels), BOARD, film.size, camera, poses)
 
 
+@pytest.mark.night
 @pytest.mark.slow
-def test_a_rendered_film_shows_its_fault(tmp_path, monkeypatch):
+@pytest.mark.parametrize(("fault", "wanted"), [({"readout": 0.02}, "rolling shutter"), ({"blur": 1.2}, "blur")])
+def test_a_rendered_film_shows_its_faults(tmp_path, monkeypatch, fault, wanted):
+    """It takes the night to draw and read films: every run finds the faults of corners and of edges."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert names(read_film(quick_film(0, tmp_path, rate=10, blur=1.2)[0])) == {"blur"}
+    assert names(read_film(quick_film(0, tmp_path, **fault)[0])) == {wanted}

@@ -6,7 +6,6 @@ import re
 import pytest
 from lab_alone import DRAWN, opened, stated_policy
 from lab_browser import assert_equals_python, control, rested, state
-from sample_sizes import sampled
 
 from percept_obs.labs import derivation_desk, observer_lab, points_lab, structure_lab
 
@@ -16,7 +15,7 @@ HANDLES = [(observer_lab, "foe", 0.01), (structure_lab, "camera", 0.25), (points
 """A handle of each lab, and how far a key moves it."""
 
 FOUR = {"observers": ["identifier_based", "sliding_mode", "extended_kalman", "de_luca"], "duration": 20.0}
-MOVES, SECONDS = sampled(200, 1000), sampled(3, 600)
+MOVES, SECONDS = 1000, 600
 
 
 def answered(told):
@@ -130,8 +129,12 @@ def test_keys_lose_no_step_where_pictures_are_late(show, make, name, step):
     assert moved == pytest.approx([2 * step, step], rel=0.005)  # a speed has three digits
 
 
+@pytest.mark.night
 def test_play_runs_at_the_rate_of_the_screen_and_neither_moves_nor_play_fill_the_memory(show):
-    """The estimates of four runs are 192 kB here; kept at every move they would fill several times the bound."""
+    """It takes the night to play ten minutes.
+
+    The estimates of four runs are 192 kB here; kept at every move they would fill several times the bound.
+    """
     page = with_worker(show, observer_lab(**FOUR), reduced_motion="no-preference")
     used = memory_of(page)
     page.evaluate("tests.steer(100)")
