@@ -6,6 +6,7 @@ import pytest
 import sympy as sp
 from attacks import attacks, hostile
 from examples import AFFINE
+from sample_sizes import sampled
 
 from percept_obs import check
 from percept_obs.checking import limits, target_of
@@ -19,10 +20,10 @@ def test_there_are_two_hundred_of_each():
     assert min(len(list(attacks())), len(list(hostile()))) >= 200
 
 
-@pytest.mark.night
 @pytest.mark.slow
 def test_what_is_nearly_the_same_is_not_called_right():
-    found = [(family, str(one), str(other)) for family, one, other in attacks() if check(one, other).right]
+    tried = list(attacks())[:: sampled(5, 1)]
+    found = [(family, str(one), str(other)) for family, one, other in tried if check(one, other).right]
     assert found == []
 
 
@@ -88,9 +89,8 @@ def cost(text):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("every", [8, pytest.param(1, marks=pytest.mark.night)])
-def test_no_text_takes_longer_than_the_limit(every):
-    costs = [(round(cost(text), 2), family, text[:80]) for family, text in list(hostile())[::every]]
+def test_no_text_takes_longer_than_the_limit():
+    costs = [(round(cost(text), 2), family, text[:80]) for family, text in list(hostile())[:: sampled(24, 1)]]
     assert [each for each in costs if each[0] > SECONDS] == []
 
 

@@ -37,11 +37,10 @@ def test_derivatives_by_every_column_are_those_of_differences():
         np.testing.assert_allclose(rows[..., 6 + column], by, atol=1e-4 * np.abs(by).max(), err_msg=str(column))
 
 
-@pytest.mark.night
 @pytest.mark.slow
 def test_a_clean_film_is_accused_of_nothing():
     """Two hundred with ALL_SAMPLES=1, half of them with noise that is correlated over pictures."""
-    accused = [seed for seed in range(sampled(4, 200)) if sight(seed, "clean").found.findings]
+    accused = [seed for seed in range(sampled(2, 200)) if sight(seed, "clean").found.findings]
     assert not accused
 
 
@@ -56,11 +55,10 @@ def test_a_fault_is_found_by_name(fault):
         assert named == wanted or ("unknown" in named and "stabilised" in fault), (seed, named)
 
 
-@pytest.mark.night
 @pytest.mark.slow
 def test_the_time_of_read_out_is_within_its_deviations():
     """Forty films with ALL_SAMPLES=1."""
-    films = [sight(seed, fault) for seed in range(sampled(3, 20)) for fault in ("20 ms", "10 ms")]
+    films = [sight(seed, fault) for seed in range(sampled(1, 20)) for fault in ("20 ms", "10 ms")]
     off = np.array([(film.found.readout - film.readout) / film.found.deviation for film in films])
     assert np.abs(off).max() < 3.5
     assert np.sqrt((off**2).mean()) < 1.3
@@ -160,10 +158,8 @@ def test_a_film_of_a_few_pictures_is_refused():
 
 @pytest.mark.night
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("fault", "wanted"),
-    [({}, set()), ({"readout": 0.02}, {"rolling shutter"}), ({"blur": 1.2}, {"blur"})],
-)
+@pytest.mark.parametrize(("fault", "wanted"), [({"readout": 0.02}, "rolling shutter"), ({"blur": 1.2}, "blur")])
 def test_a_rendered_film_shows_its_faults(tmp_path, monkeypatch, fault, wanted):
+    """It takes the night to draw and read films: every run finds the faults of corners and of edges."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert names(read_film(quick_film(0, tmp_path, **fault)[0])) == wanted
+    assert names(read_film(quick_film(0, tmp_path, **fault)[0])) == {wanted}

@@ -32,10 +32,9 @@ def marks(node, texts):
     return [line["mark"] if line["read"] else "unread" for line in found]
 
 
-@pytest.mark.night
 @pytest.mark.slow
 def test_python_and_the_page_judge_plain_lines_alike_and_no_wrong_one_is_right(node):
-    chosen = list(lines(sampled(160, 10_000), seed=26))
+    chosen = list(lines(sampled(60, 10_000), seed=26))
     page = in_the_page(node, lines=[(name, row, text) for _, name, row, text, _ in chosen])["judged"]
     python = [MARKS[alone(sheet, row, text).verdict] for sheet, _, row, text, _ in chosen]
     told = zip(chosen, python, page, strict=True)
@@ -43,11 +42,12 @@ def test_python_and_the_page_judge_plain_lines_alike_and_no_wrong_one_is_right(n
     assert {mark for (*_, slip), mark in zip(chosen, python, strict=True) if not slip} == {"right"}
     assert min(Counter(python)["right"], Counter(python)["wrong"]) > len(chosen) / 4
     assert {kind for *_, kind in chosen} >= {"sign", "factor", "letter", "dropped"}  # an index is a letter
-    for line in page:
-        assert all(as_tree(piece) for piece in line["pieces"])
+    for piece in (piece for line in page for piece in line["pieces"]):
+        as_tree(piece)  # is well formed
 
 
-THE_SAME = ["sin(y1)^2 + cos(y1)^2 - 1", "(y1 + y2)^2 - y1^2 - 2 y1 y2 - y2^2", "exp(y1 + y2) - exp(y1) exp(y2)"]
+THE_SAME = ["y1^(-2) y1^2 - 1", "sin(y1)^2 + cos(y1)^2 - 1"]
+THE_SAME += ["(y1 + y2)^2 - y1^2 - 2 y1 y2 - y2^2", "exp(y1 + y2) - exp(y1) exp(y2)"]
 NOT_NOTHING = {
     "far too small": "0.000000001 * 0.000000001 y1",
     "far away": "exp(-100 - y1^2)",
@@ -67,7 +67,8 @@ def test_what_is_the_same_is_right_and_no_attack_on_the_numbers_is(node):
 
 def test_python_reads_what_is_no_plain_arithmetic_and_the_page_says_so(node):
     texts = ["\\frac{y1}{2}", "y1*np.sin(y2)", "y_{1}", "y1²", "the rate of y1", "a/b c", "y1 = y2", "constructor"]
-    texts += ["__proto__", "toString", "y1.constructor", "sin y1", "y1^y2", "2 3 y1"]
+    texts += ["__proto__", "toString", "y1.constructor", "sin y1", "2 3 y1", "y1^y2"]
+    texts += ["y1^(y2)", "y1^(1/0)", "y1^(2-3)"]
     assert set(marks(node, texts)) == {"unread"}
     desks = [derivation_desk(step=6, typed={KEY: text}) for text in [*texts, "a13 + (", RIGHT]]
     found = [answer["lines"][0].get("refusal") for answer in answers_of_the_page(node, *desks)]
@@ -166,7 +167,7 @@ def typed(name, row, terms):
     return name, row, " + ".join(f"({plain(term)})" for term in terms), [0, 0, INVERSE]
 
 
-@pytest.mark.night
+@pytest.mark.slow
 def test_every_true_line_comes_nearer_with_each_term_and_jumps_away_at_each_turned_sign(node):
     true = list(image_lines())
     turned = [(k, typed(*of, [*terms[:k], -terms[k]])) for *of, terms in true for k in range(len(terms))]
@@ -175,5 +176,5 @@ def test_every_true_line_comes_nearer_with_each_term_and_jumps_away_at_each_turn
     fall = [falls(misses) for misses in found[: len(true)]]
     jump = [misses[k] > [1, *misses][k] for (k, _), misses in zip(turned, found[len(true) :], strict=True)]
     print(f"{sum(fall)} of {len(fall)} lines fall with each term; {sum(jump)} of {len(jump)} turned signs jump")
-    assert len(fall) > 25
+    assert len(fall) > sampled(3, 25)
     assert all([*fall, *jump])

@@ -131,7 +131,10 @@ def test_keys_lose_no_step_where_pictures_are_late(show, make, name, step):
 
 @pytest.mark.night
 def test_play_runs_at_the_rate_of_the_screen_and_neither_moves_nor_play_fill_the_memory(show):
-    """The estimates of four runs are 192 kB here; kept at every move they would fill several times the bound."""
+    """It takes the night to play ten minutes.
+
+    The estimates of four runs are 192 kB here; kept at every move they would fill several times the bound.
+    """
     page = with_worker(show, observer_lab(**FOUR), reduced_motion="no-preference")
     used = memory_of(page)
     page.evaluate("tests.steer(100)")

@@ -134,9 +134,9 @@ def test_every_observer_agrees_in_every_structure(of_every_structure, key):
             np.testing.assert_allclose(told["resets"], run.resets, rtol=0, atol=1e-9)
 
 
-@pytest.mark.night
 def test_random_settings_agree_as_far_as_numbers_decide_them(lab, node):
-    tasks = [lab.check({**lab.model["opening"], **random_settings(lab, seed)}) for seed in range(sampled(10, 60))]
+    seeds = range(17, 17 + sampled(2, 60))
+    tasks = [lab.check({**lab.model["opening"], **random_settings(lab, seed)}) for seed in seeds]
     seen = 0
     for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
         if answer["problem"] is None:

@@ -107,7 +107,7 @@ def test_python_may_be_busy_set_the_settings_and_say_what_is_wrong(browser_page,
     page.wait_for_function(f"{FIRST}.shown.settings.seed === 5")
 
 
-@pytest.mark.night
+@pytest.mark.night  # half a minute of computing, for what few do
 def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_page, folder, server):
     page = browser_page
     cells = [
@@ -148,7 +148,7 @@ def test_labs_of_all_kinds_live_side_by_side_and_outlive_their_kernel(browser_pa
     assert set(shown["settings"]["unknown"]) != set(before[1]["unknown"])
 
 
-@pytest.mark.night
+@pytest.mark.night  # half a minute of computing, for what few do
 def test_a_restarted_kernel_leaves_the_lab_alive_and_one_that_has_ended_says_how_it_comes_back(browser_page, folder):
     page = browser_page
     open_lab(page, folder, "again.ipynb")
@@ -196,7 +196,7 @@ PLAYED = f"() => !{FIRST}.screen.clock.playing && !{FIRST}.screen.clock.secret"
 SETTLED = f"() => {FIRST}.shown.runs[0].settling"
 
 
-@pytest.mark.night
+@pytest.mark.night  # each thing that it does has a test of its own
 def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, folder):
     page = browser_page
     shutil.copy(NOTEBOOKS / "00_start.ipynb", folder)
@@ -237,7 +237,7 @@ def test_the_first_notebook_does_its_experiments_in_jupyterlab(browser_page, fol
     assert log_entries(page) == ""
 
 
-@pytest.mark.night
+@pytest.mark.night  # the kernel's part of it is held with the notebooks
 def test_an_error_in_a_callback_reaches_the_log_console(browser_page, folder):
     page = browser_page
     write_notebook(folder, "failing.ipynb", FAILING + "slider")

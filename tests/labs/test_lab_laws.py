@@ -103,6 +103,7 @@ def test_each_chart_says_in_words_what_it_shows(fresh, kind):
 
 @pytest.mark.night
 def test_every_control_is_reached_and_moved_by_keyboard(browser, kind):
+    """It takes the night for its fifty seconds: controls are of few kinds, and each kind has tests of its own."""
     page = opened(browser, MAKE[kind](**WIDE_OPEN[kind]))
     page.wait_for_function(DRAWN)
     page.evaluate("tests.unfold()")

@@ -430,7 +430,6 @@ def velocities(v_c=MEASURED, times=STAMPS):
     )
 
 
-@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.node
 def test_of_structure_velocities_in_samples_agree_and_copied_code_makes_the_same_run(node):

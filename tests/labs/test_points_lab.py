@@ -51,11 +51,10 @@ def test_page_python_and_the_copied_code_agree_to_1e_9(answers, runs, case):
         np.testing.assert_allclose(copied.state, run.state, rtol=0, atol=1e-9)
 
 
-@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.node
 def test_random_settings_agree(lab, node):
-    tasks = [lab.check({**lab.settings, **random_settings(seed)}) for seed in range(sampled(10, 60))]
+    tasks = [lab.check({**lab.settings, **random_settings(seed)}) for seed in range(sampled(4, 60))]
     for settings, answer in zip(tasks, run_in_node(node, lab, tasks), strict=True):
         run = run_of(settings)
         assert_same_run(answer, run)
@@ -65,8 +64,11 @@ def test_random_settings_agree(lab, node):
 def assert_same_run(answer, run, tolerance=1e-9):
     recording = run.recording
     np.testing.assert_allclose(as_array(answer["time"]), recording.time, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(as_array(answer["truth"]), recording.truth.ravel(), rtol=0, atol=tolerance)
-    np.testing.assert_allclose(as_array(answer["outputs"]), recording.outputs.ravel(), rtol=0, atol=tolerance)
+    truth, form = as_array(answer["truth"], recording.truth.shape[1]), run.observer.form
+    np.testing.assert_allclose(truth, recording.truth, rtol=0, atol=tolerance)
+    told, known = (points[..., :2] / points[..., 2:] for points in map(form.locate, (truth, recording.truth)))
+    moved = (told - known).ravel()  # near the camera an image moves by more than its point
+    np.testing.assert_allclose(as_array(answer["outputs"]) - moved, recording.outputs.ravel(), rtol=0, atol=1e-12)
     assert answer["divergedAt"] == run.diverged_at
     assert answer["summary"]["verdict"] == run.verdict()
     told, state = as_array(answer["estimate"]), run.state.ravel()

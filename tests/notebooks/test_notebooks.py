@@ -14,6 +14,7 @@ from nbformat.v4 import new_code_cell, new_notebook
 from notebook_exercises import FAILING, asked, code, read
 from notebook_runs import run
 from places import NOTEBOOKS
+from sample_sizes import sampled
 from utias_cut import whole
 
 from percept_obs.labs.observer.lab import observer_lab
@@ -75,15 +76,16 @@ def test_it_runs_with_what_it_asks_for_and_every_control_moves(name, ran):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in NAMES if "load_utias" in "".join(code(read(name)))])
 def test_it_runs_with_the_whole_recording_too(name, tmp_path):
+    """It takes the night: every run has the notebooks with the cut that comes with the package."""
     one = run(name, tmp_path, whole())
     assert one.fault == ""
     assert silent_pictures(one.notebook, one.widgets) == []
 
 
-@pytest.mark.night
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in NAMES if asked(read(name))])
+@pytest.mark.parametrize("name", [name for name in NAMES if asked(read(name))][: sampled(1, None)])
 def test_a_missing_module_is_one_sentence_and_no_other_cell_runs(name, tmp_path):
+    """One notebook, for each asks by the same function; all of them with ALL_SAMPLES=1."""
     notebook = nbformat.read(NOTEBOOKS / name, as_version=4)
     for cell in notebook.cells:
         cell.metadata.tags = ["raises-exception"]  # and yet the next ones are sent

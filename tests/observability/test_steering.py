@@ -39,11 +39,11 @@ def towards(seed, widest):
     return Scenario(f"start {seed}", affine(STILL, b), position, SECONDS, pinhole())
 
 
-def gains(widest, count):
-    """How many times smaller the bound of the distance is at the end, for some random starts."""
+def gains(count):
+    """How many times smaller the bound of the distance is at the end, for some random starts within 30 degrees."""
     found = []
     for seed in range(count):
-        straight = towards(seed, widest)
+        straight = towards(seed, 30)
         recordings = [record(each, camera=CAMERA) for each in (straight, steered(straight))]
         free, turned = (cramer_rao(each, AFFINE).relative[-1] for each in recordings)
         found.append(free / turned)
@@ -53,16 +53,9 @@ def gains(widest, count):
 @pytest.mark.slow
 def test_the_bound_is_smaller_for_a_camera_that_looks_where_it_goes():
     """Of 100 starts within 30 degrees the median is about 2; steering by the instant may lose in single ones."""
-    found = gains(30, sampled(11, 100))
+    found = gains(sampled(11, 100))
     assert np.median(found) > 1.5
     assert np.median(found) < 4
-
-
-@pytest.mark.night
-@pytest.mark.slow
-def test_in_any_direction_there_is_less_to_gain():
-    """Most directions are sideways already; there 1.1 is had, and the best straight path gives 1.3."""
-    assert 1.05 < np.median(gains(180, sampled(40, 100))) < 1.4
 
 
 def test_the_speed_stays_and_the_excitation_grows():

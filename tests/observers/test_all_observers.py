@@ -146,12 +146,11 @@ def test_dixons_observer_started_at_the_truth_stays_near(scenario):
     assert np.abs(run.innovation).max() < 0.05
 
 
-@pytest.mark.night
 @pytest.mark.slow
 @each(["linear_approximation"])
 @given(scenario=motions())
 @example(scenario=replace(EQ35, duration=5.0))
-@drawn(5)
+@drawn(2)
 def test_every_iterate_of_the_cascade_stays_nearer_to_the_truth_it_started_at(name, form, scenario):
     recording = record(scenario)
     cascades = [linear_approximation(FORMS[form], iterates=n) for n in (1, 2, 3, 4)]

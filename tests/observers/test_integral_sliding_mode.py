@@ -7,6 +7,7 @@ import pytest
 import sympy as sp
 from examples import BOTH
 from refusals import refuses
+from sample_sizes import across, sampled
 
 from percept_obs import Scenario, affine, pinhole, record, scenarios, track
 from percept_obs.compile import vectorised
@@ -178,16 +179,14 @@ def test_the_sign_chatters_by_gamma_squared_c_times_the_step():
     assert spread[1e-3][1] == pytest.approx(10 * spread[1e-4][1], rel=0.5)
 
 
-VARYING = ("V.A", "VI.A")
-
-
-@pytest.mark.night
 @pytest.mark.slow
-@pytest.mark.parametrize("angular_velocity", [(0.0, 0.0, 0.0), (0.1, -0.2, 0.3)], ids=["w = 0", "w"])
-@pytest.mark.parametrize("section", [*VARYING, "IV.A", "IV.B", "V.B", "VI.B", "VI.C"])
+@pytest.mark.parametrize(
+    ("section", "angular_velocity"),
+    across(["V.A", "VI.A", "IV.A", "IV.B", "V.B", "VI.B", "VI.C"], [(0.0, 0.0, 0.0), (0.1, -0.2, 0.3)]),
+)
 def test_velocities_that_vary(section, angular_velocity):
     setup = chwa2019_simulation(section, angular_velocity)
-    recording = record(setup)
+    recording = record(setup, sampled(3.0, None))
     run = track(recording, ismo(setup.choice.form), ZERO, hold="first", **fine)
     found, true = quantities(run)
     late = run.time >= 1
@@ -198,19 +197,19 @@ def test_velocities_that_vary(section, angular_velocity):
         assert np.abs(found[name] - true[name])[late].max() < 0.02 * span
 
 
+STARTS = {"from zero": (ZERO, 0.589), "from the first sample": (None, 0.137)}
+"""States to start from, and the end of the gap at the start, in s."""
+
+
 def ranges(run):
     """Estimated over true depth; NaN in a gap."""
     return run.distance * run.recording.view.inverse(run.truth)
 
 
-@pytest.mark.night
 @pytest.mark.slow
-@pytest.mark.parametrize("switch", ["ideal", LAYER])
-@pytest.mark.parametrize(
-    ("start", "begins"), [(ZERO, 0.589), (None, 0.137)], ids=["from zero", "from the first sample"]
-)
-def test_no_spike_at_the_start_nor_where_the_camera_turns_back(switch, start, begins):
-    setup = chwa2019_crossing()
+@pytest.mark.parametrize(("switch", "start"), across(["ideal", LAYER], ["from zero", "from the first sample"]))
+def test_no_spike_at_the_start_nor_where_the_camera_turns_back(switch, start):
+    setup, (start, begins) = chwa2019_crossing(), STARTS[start]
     observer = ismo(setup.choice.form, switch)
     run = track(record(setup), observer, start, hold="first", **fine)
     assert run.unobservable_intervals[0] == (0, pytest.approx(begins, abs=0.002))

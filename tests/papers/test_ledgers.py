@@ -53,8 +53,6 @@ PAPERS = {
     "Inaba": Known(INABA2005, 24, 1000),
     "Chwa": Known(CHWA2019, 37, 1000),
 }
-FEW = 2
-"""Slips of each formula that the quick tests try."""
 each_paper = pytest.mark.parametrize("known", PAPERS.values(), ids=PAPERS)
 
 
@@ -113,7 +111,6 @@ def test_every_entry_says_how_it_is_known(known):
             assert entry.expected in (Verdict.HOLDS, Verdict.NOT_CHECKABLE)
 
 
-@pytest.mark.night
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("entry", "letters"),
@@ -128,7 +125,7 @@ def test_one_slip_in_a_formula_that_holds_is_noticed(entry, letters):
     """A slip changes the verdict, unless what it makes is proven to say the same; ALL_SAMPLES=1 tries every slip."""
     changed = list(slips(entry.printed, letters))
     assert changed
-    changed = random.Random(entry.place).sample(changed, sampled(min(FEW, len(changed)), len(changed)))
+    changed = random.Random(entry.place).sample(changed, sampled(1, len(changed)))
     unnoticed = [p for p in changed if replace(entry, printed=p).finding.verdict == Verdict.HOLDS]
     different = [p for p in unnoticed if not say_the_same(p, entry.printed)]
     assert not different, different
@@ -194,19 +191,6 @@ def test_a_verdict_that_is_not_the_recorded_one_is_told(two_entries):
     assert not papers.judge(two_entries)
     assert "false as stated;" in papers.report(two_entries)
     assert "recorded: holds" in papers.report(two_entries)
-
-
-@pytest.mark.night
-@pytest.mark.slow
-def test_further_processes_find_the_same():
-    ledger = Ledger("a part", tuple(replace(entry) for entry in MA2005.search("derived").entries))
-    assert not any("finding" in vars(entry) for entry in ledger.entries)
-    assert papers.judge([ledger], processes=1)
-    assert papers.judge([MA2005.search("derived")], processes=2)
-    for entry in ledger.entries:
-        assert MA2005[entry.place].finding.verdict == entry.finding.verdict
-        assert MA2005[entry.place].finding.numbers == entry.finding.numbers
-        assert str(MA2005[entry.place]) == str(entry)
 
 
 def test_a_correction_that_mends_nothing_is_told(monkeypatch):

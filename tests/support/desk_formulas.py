@@ -2,11 +2,13 @@
 
 import base64
 import random
+from functools import cache
 from itertools import product
 
 import sympy as sp
 from javascript import run_script
 from lab_settings import FRONT
+from sample_sizes import sampled
 
 from percept_obs.checking.explaining import plain
 from percept_obs.checking.slips import MISTAKES, siblings_in, slips_in
@@ -19,14 +21,16 @@ from percept_obs.labs.shared.printed import file_of
 from percept_obs.labs.shared.surfaces import SURFACES
 
 SPELLINGS = (plain, str, lambda formula: plain(formula).replace("_", ""), lambda formula: plain(sp.expand(formula)))
+SYSTEMS = sampled([("rigid", "pinhole")], list(product(MOTIONS, SURFACES)))
 LARGEST = 60
 """Largest number of operations of a formula that is multiplied out, and so spelled in the last way."""
 
 
+@cache
 def sheets():
-    """All sheets that the desk offers, by their names in the page, but those for which there is no observer."""
+    """All sheets of the `SYSTEMS`, by their names in the page, but those for which there is no observer."""
     found = {}
-    for motion, surface, part in product(MOTIONS, SURFACES, PARTS):
+    for (motion, surface), part in product(SYSTEMS, PARTS):
         system = system_of(motion, surface)
         for outputs, observer in product(system.output_choices, OBSERVERS):
             name = sheet_name(f"{motion} {surface}", outputs, observer, part)

@@ -1,6 +1,8 @@
 """Widths of windows, from a telephone to a large screen, and the law that a page keeps at each."""
 
-WIDTHS = (360, 390, 768, 1024, 1280, 1440, 1920)
+from sample_sizes import sampled
+
+WIDTHS = sampled((360, 768, 1024, 1920), (360, 390, 768, 1024, 1280, 1440, 1920))
 
 
 def assert_fits(page, name, drawers=True):
