@@ -316,7 +316,7 @@ def at_work(process):
 
 BEGUN = {
     "percept-obs film film.mp4": lambda process: process.cpu_times().user > 0.2,  # while it is imported
-    "percept-obs compare --seeds 300": lambda process: process.cpu_times().user > 4,
+    "percept-obs compare --seeds 150": lambda process: process.cpu_times().user > 4,
     "percept-obs check": lambda process: len(at_work(process)) > 1 or os.cpu_count() == 1,
 }
 """Command lines, and when they are stopped."""
@@ -326,7 +326,8 @@ def stopped(line, folder, stop):
     """The exit code of a command line that is stopped, and what it says then."""
     process = started(line, folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     seen = psutil.Process(process.pid)
-    wait_until(lambda: BEGUN[line](seen), "it to begin")
+    wait_until(lambda: process.poll() is not None or BEGUN[line](seen), "it to begin")
+    assert process.poll() is None, process.communicate()[1]
     others = seen.children(recursive=True)
     stop(seen)
     said = process.communicate(timeout=60)[1]
