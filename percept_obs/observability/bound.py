@@ -137,7 +137,7 @@ def cramer_rao(
     recording: Recording,
     system: System,
     prior: Prior = None,
-    noise_variance: ArrayLike | None = None,
+    noise_variance: Mapping[str, float] | ArrayLike | None = None,
     doubt: Doubt = 0.0,
     step: float = LONGEST_STEP,
 ) -> Bound:
@@ -255,7 +255,7 @@ def _deviations(covariances: Array) -> Array:
     return np.sqrt(np.maximum(np.diagonal(covariances, axis1=1, axis2=2), 0.0))
 
 
-def _noise(recording: Recording, form: PartitionedSystem, variance: ArrayLike | None) -> Array:
+def _noise(recording: Recording, form: PartitionedSystem, variance: Mapping[str, float] | ArrayLike | None) -> Array:
     """Covariance of the noise, shape (1, m, m) or (K, m, m)."""
     m, count = len(form.measured), len(recording.time)
     if variance is None and not recording.effective_variance:
@@ -263,6 +263,10 @@ def _noise(recording: Recording, form: PartitionedSystem, variance: ArrayLike | 
             f"the recording's noise variance is {recording.noise_variance}, and without noise there is no bound; give "
             "noise_variance, or record with noise: Camera(noise=Gaussian(0.01))"
         )
+    if isinstance(variance, Mapping):
+        if set(variance) != set(form.measured):
+            raise ValueError(f"noise_variance names {', '.join(variance)}; name all of {', '.join(form.measured)}")
+        variance = [variance[name] for name in form.measured]
     values = np.asarray(recording.effective_variance if variance is None else variance, dtype=float)
     if values.ndim < 2 and values.shape in ((), (m,)):
         values = np.diag(np.broadcast_to(values, m))

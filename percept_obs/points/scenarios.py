@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from percept_obs.points.manoeuvre import PATH, Manoeuvre
 from percept_obs.recording import Scene
 from percept_obs.recording.path import constant_path, times_of, varying_path
 from percept_obs.system.motion import TIME, Motion, linear
-from percept_obs.validation import Times, checked, set_fields
+from percept_obs.validation import NAMED, Times, checked, set_fields
 
 
 class LeavesEveryBound(ValueError):
@@ -61,7 +62,7 @@ class PointsScenario(Scene):
 
     name: str
     form: PointsForm
-    state: Sequence[float]
+    state: Annotated[Sequence[float], NAMED]
     duration: float
     source: str = ""
 

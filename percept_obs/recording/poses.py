@@ -91,10 +91,10 @@ class Poses:
         position = numbers(_by_axes(self.position, "xyz"), "the poses' position")
         turns = numbers(_by_axes(self.orientation, "xyzw"), "the poses' orientation")
         known = numbers([*self.sigma, self.correlated], "sigma and correlated")
-        if known.shape != (3,) or not (np.isfinite(known) & (known >= 0)).all():
+        if known.shape != (3,) or not (np.isfinite(known) & (known >= 0)).all() or known[1] > 1:
             raise ValueError(
                 f"sigma is {self.sigma} and correlated is {self.correlated}; give a deviation in metres and one in "
-                "radians, and seconds, none of them negative"
+                "radians (at most 1), and seconds, none of them negative"
             )
         if time.ndim != 1 or len(time) < 2:
             raise ValueError(f"the poses have times of shape {time.shape}; expected a list of at least two seconds")
@@ -115,6 +115,7 @@ class Poses:
                 f"{float(time[late.argmax() + 1])!r} s: sort the rows and remove repeated ones"
             )
         ask_for_seconds(time, "a list of poses")
+        vars(self).update(sigma=tuple(known[:2].tolist()))
         vars(self).update(time=readonly(time), position=readonly(position), orientation=readonly(_quaternions(turns)))
 
     @cached_property
@@ -124,7 +125,12 @@ class Poses:
 
         return Rotation.from_quat(self.orientation)
 
-    def mounted(self, position: ArrayLike, orientation: ArrayLike, shift: float = 0.0) -> Poses:
+    def mounted(
+        self,
+        position: Annotated[ArrayLike, TABLE],
+        orientation: Annotated[ArrayLike, TABLE],
+        shift: float = 0.0,
+    ) -> Poses:
         """Return the poses of a camera fixed to this body, by the camera's clock: X_body = R X_camera + p.
 
         Parameters
@@ -145,7 +151,9 @@ class Poses:
         >>> body.mounted([0, 0, 0.2], [0, 0, 0, 1]).position[0].tolist()
         [1.0, 0.0, 0.2]
         """
-        place, turn = numbers(position, "the position"), numbers(orientation, "the orientation")
+        place = numbers(_by_axes(position, "xyz"), "the position")
+        turn = numbers(_by_axes(orientation, "xyzw"), "the orientation")
+        place = place.ravel() if place.shape == (3, 1) else place
         finite = np.isfinite([*place.ravel(), *turn.ravel(), shift]).all()
         if place.shape != (3,) or turn.shape not in ((4,), (3, 3)) or not finite:
             raise ValueError(

@@ -129,6 +129,7 @@ class Recording:
 
     def __post_init__(self) -> None:
         outputs = _by_name("outputs", self.outputs, self.names)
+        outputs = np.reshape(outputs, (-1, 1)) if len(self.names) == 1 == np.ndim(outputs) else outputs
         truth = _by_name("truth", self.truth, [symbol.name for symbol in self.view.coordinates])
         distances = MappingProxyType({name: readonly(values) for name, values in self.distances.items()})
         vars(self).update(
@@ -177,7 +178,8 @@ class Recording:
         if self.outputs.shape != expected or not self.names:
             raise ValueError(
                 f"the recording has outputs of shape {self.outputs.shape}; expected {expected}: "
-                f"one row a time, one column for each of the names, {', '.join(self.names) or 'at least one'}"
+                f"one row a time, one column for each of the names, {', '.join(self.names) or 'at least one'}; the "
+                "times come first"
             )
         known = [symbol.name for symbol in self.view.image_coordinates]
         if len(set(self.names)) != len(self.names) or not set(self.names) <= set(known):
@@ -467,6 +469,7 @@ def _by_name(name: str, table: Any, expected: Sequence[str]) -> Any:
         return table
     if missing := [column for column in expected if column not in table]:
         raise ValueError(
-            f"{name} is a table with the columns {', '.join(table)}; it needs {', '.join(missing)}: rename them"
+            f"{name} is a table with the columns {', '.join(table)}; it needs {', '.join(missing)}: rename them, or "
+            "fill them with NaN"
         )
     return np.stack([table[column] for column in expected], axis=-1)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Annotated
 
 import numpy as np
 import sympy as sp
@@ -20,7 +21,7 @@ from percept_obs.recording.recording import Recording
 from percept_obs.system.motion import Motion, ask_for_degrees, coefficients
 from percept_obs.system.surfaces import POINT, BehindCamera, ImagingSurface
 from percept_obs.system.view import View
-from percept_obs.validation import Times, checked, travels
+from percept_obs.validation import NAMED, Times, checked, travels
 
 LONGEST_STEP_SHARE = 0.25
 """Longest interval between two checks of the distance, as a share of the motion's shortest time constant."""
@@ -72,7 +73,7 @@ class Scenario(Scene):
 
     name: str
     motion: Motion
-    position: Sequence[float]
+    position: Annotated[Sequence[float], NAMED]
     duration: float
     surface: ImagingSurface
     source: str = ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from percept_obs.recording.camera import Scene
 from percept_obs.recording.path import times_of
 from percept_obs.system.motion import Motion
 from percept_obs.system.state_view import StateView
-from percept_obs.validation import Times, checked, set_fields
+from percept_obs.validation import NAMED, Times, checked, set_fields
 
 
 @checked
@@ -59,7 +60,7 @@ class StateScenario(Scene):
     name: str
     seen: StateView
     motion: Motion
-    state: Sequence[float]
+    state: Annotated[Sequence[float], NAMED]
     duration: float
     measured: Motion | None = None
     constants: Callable[[Array], Array] | None = None

@@ -126,7 +126,8 @@ def ensemble(
     over = {name: listed(values) if isinstance(values, Iterator) else values for name, values in (over or {}).items()}
     sizes = {"seed": int(seeds) if isinstance(seeds, int | np.integer) else len(seeds)}
     for name, values in over.items():
-        sizes |= getattr(values, "sizes", {name: len(values) if isinstance(values, Sized) else 1})
+        several_values = isinstance(values, Sized) and getattr(values, "shape", True)
+        sizes |= getattr(values, "sizes", {name: len(values) if several_values else 1})
     limit(float(math.prod(sizes.values())), "runs", "take fewer values or seeds", MOST_RUNS)
     several: Array = np.asarray(range(seeds) if isinstance(seeds, int | np.integer) else seeds)
     names = units(scenario, observer, motion)

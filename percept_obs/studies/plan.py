@@ -76,7 +76,10 @@ def grid_of(over: Mapping[str, Any], seeds: Array, units: Mapping[str, str]) -> 
 
     columns: dict[str, Any] = {"seed": ("seed", seeds, {"units": "1"})}
     for name, given in over.items():
-        along, values = tuple(getattr(given, "dims", (name,))), numbers(getattr(given, "values", given), f"over {name}")
+        along = tuple(getattr(given, "dims", (name,)))
+        values = numbers(given.values if hasattr(given, "dims") else given, f"over {name}")
+        if along == (name,) and values.size == max(values.shape, default=1):  # a number, or a column
+            values = values.ravel()
         if values.ndim != len(along) or not values.size or not np.isfinite(values).all():
             raise ValueError(
                 f"over goes {name!r} through values of shape {values.shape}; give finite numbers, a list of them or a "

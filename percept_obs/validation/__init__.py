@@ -26,6 +26,7 @@ from percept_obs.validation.expressions import iterable as iterable
 from percept_obs.validation.expressions import matrix as matrix
 from percept_obs.validation.expressions import refuse_names as refuse_names
 from percept_obs.validation.kinds import INTEGER as INTEGER
+from percept_obs.validation.kinds import NAMED as NAMED
 from percept_obs.validation.kinds import TABLE as TABLE
 from percept_obs.validation.kinds import TIMES as TIMES
 from percept_obs.validation.kinds import Coefficients as Coefficients

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import reprlib
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import is_dataclass
 from functools import cache, wraps
 from numbers import Real
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from percept_obs.validation.environment import load_pandas
 from percept_obs.validation.kinds import Kind, kind_of, with_article
-from percept_obs.validation.plain import are_numbers, plain, unit_of
+from percept_obs.validation.plain import are_numbers, in_order, labels, plain, unit_of
 from percept_obs.validation.travel import travels
 
 Thing = TypeVar("Thing", bound=Callable[..., Any])
@@ -134,7 +134,18 @@ def _made(function: str, name: str, value: Any, kind: Kind, parameter: inspect.P
     found = kind.made(value)
     if not kind.fits(found):
         raise WrongKind(_message(function, name, value, kind, parameter))
+    if found is not value and not isinstance(found, Mapping):
+        _by_place(f"{function}(): {name}", value)
     return found
+
+
+def _by_place(what: str, value: Any) -> None:
+    """Refuse labels in another order where numbers are taken by their places."""
+    if not in_order(names := labels(value)):
+        raise WrongKind(
+            f"{what} has the labels {', '.join(names)}, and numbers are taken by their places here; put them in "
+            "order, and give .to_numpy() of them"
+        )
 
 
 def _type_of(value: Any) -> Any:
@@ -164,7 +175,9 @@ def _message(function: str, argument: str, value: Any, kind: Kind, parameter: in
         remedy = f"call it: {value.__name__}({', '.join(needed)})"
     elif unit_of(value) is not None:
         remedy = "pass numbers, in seconds, metres and radians"
-    elif any(entry.fits(value) for entry in kind.entries):
+    elif "a Motion" in kind.label and callable(getattr(value, "motion", None)):
+        remedy = "pass its .motion()"
+    elif kind.entries and kind.fits([value]):
         remedy = "put it into a list"
     return f"{function}(): {argument} is {described(value)}; expected {kind.label}" + (remedy and f": {remedy}")
 
@@ -182,6 +195,7 @@ def numbers(value: Any, name: str, *shape: int | str) -> NDArray[np.float64]:
     found = value if type(value) is np.ndarray else plain(value)
     if not are_numbers(found):
         raise WrongKind(f"{name} is {described(value)}; expected real numbers")
+    _by_place(name, value)
     array = np.asarray(found, dtype=float)
     last = array.shape[-len(shape) :] if shape else ()
     if len(last) != len(shape) or any(isinstance(s, int) and s != found for s, found in zip(shape, last, strict=True)):

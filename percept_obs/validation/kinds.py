@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from numbers import Integral
 from types import FunctionType, MappingProxyType, MethodType, NoneType, UnionType
@@ -15,7 +15,7 @@ import sympy as sp
 from numpy.typing import ArrayLike, NDArray
 
 from percept_obs.validation.limits import limit_range
-from percept_obs.validation.plain import are_numbers, columns, is_real, is_table, listed, plain, single, unit_of
+from percept_obs.validation.plain import are_numbers, columns, is_real, is_table, labels, listed, plain, single, unit_of
 
 EXAMPLES = MappingProxyType(
     {
@@ -221,7 +221,8 @@ def _mapping(key: Kind, entry: Kind) -> Kind:
         if isinstance(value, Mapping) and fits(value):
             return value
         found = columns(value)
-        return value if found is None else {key.made(k): entry.made(v) for k, v in found.items()}
+        named = {key.made(k): entry.made(v) for k, v in (found or {}).items()}
+        return value if found is None or len(named) < len(found) else named
 
     return Kind(f"a mapping from {key.label} to {entry.label}", fits, entry.example, made=made)
 
@@ -247,7 +248,7 @@ def _sequence(origin: type, inside: tuple[Any, ...]) -> Kind:
         return all(map(entry.fits, value))
 
     def made(value: Any) -> Any:
-        if fits(value):
+        if fits(value) and not labels(value):
             return value
         given = listed(value) if isinstance(value, Iterator) else value
         found = plain(given)
@@ -273,6 +274,15 @@ def _instance(cls: Any) -> Kind:
 
     fits = has_members if getattr(cls, "_is_protocol", False) else lambda value: isinstance(value, cls)
     return Kind(with_article(cls.__name__), fits, EXAMPLES.get(cls.__name__, ""), by_type=True)
+
+
+_ROW = kind_of(Sequence[float])
+NAMED = replace(
+    _ROW,
+    fits=lambda v: all(map(is_real, v.values())) if isinstance(v, Mapping) else _ROW.fits(v),
+    made=lambda v: columns(v) if labels(v) else _ROW.made(v),
+)
+"""Numbers one after another, or by their names."""
 
 
 def with_article(name: str) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Set
+import re
+from collections.abc import Iterable, Iterator, Mapping, Set, ValuesView
 from decimal import Decimal
 from fractions import Fraction
 from itertools import islice
@@ -16,6 +17,9 @@ from percept_obs.validation.limits import limit, limit_range
 
 LARGEST_FLOAT = 10**308
 """Integers and fractions from here on do not become floats."""
+
+MOST_LABELS = 20
+"""Labels beyond so many name no coordinates."""
 
 MOST_LISTED = 1_000_000
 """Most entries that are taken one after another."""
@@ -33,7 +37,7 @@ def are_numbers(value: Any) -> bool:
     limit_range(value)
     try:
         array = np.asarray(value)
-    except (ValueError, TypeError):  # ragged
+    except (ValueError, TypeError, RuntimeError):  # ragged, or a tensor that keeps its gradient
         return False
     return array.dtype.kind in "iuf" or (array.dtype.kind == "O" and all(map(is_real, array.ravel())))
 
@@ -59,12 +63,12 @@ def plain(value: Any) -> Any:
     if value is None or isinstance(value, str | bytes | Mapping) or callable(value):
         return value
     limit_range(value)
-    found = listed(value) if isinstance(value, Iterator | Set) else value
+    found = listed(value) if isinstance(value, Iterator | Set | ValuesView) else value
     if unit_of(found) is not None:
         found = list(map(_without_unit, found)) if isinstance(found, list | tuple) else _without_unit(found)
     if unit_of(found) is not None:
         return value
-    for method in ("as_quat", "to_numpy"):
+    for method in ("detach", "as_quat", "to_numpy"):
         found = getattr(found, method)() if hasattr(found, method) else found
     try:
         array: Any = found if isinstance(found, np.ndarray) else np.asarray(found)
@@ -90,6 +94,8 @@ def _number(entry: Any) -> Any:
         return entry.total_seconds()
     if hasattr(entry, "as_quat"):
         return entry.as_quat()
+    if isinstance(entry, np.ndarray) and entry.ndim == 1 and are_numbers(entry):
+        return entry
     if not is_real(entry):
         raise TypeError("no number")
     return float(entry)
@@ -140,10 +146,31 @@ def columns(value: Any) -> Mapping[Any, Any] | None:
         return {name: value[name] for name in value.dtype.names} if value.dtype.names else None
     if hasattr(value, "columns"):
         return {name: value[name] for name in value.columns}
+    if hasattr(value, "coords") and (names := labels(value)):
+        return {name: value.values[..., place] for place, name in enumerate(names)}
     return dict(value.items()) if hasattr(value, "items") and hasattr(value, "index") else None
+
+
+def labels(value: Any) -> list[str]:
+    """Return the names of the entries of a row, where a table, a series or an array of xarray has a few; else none."""
+    names: Any = getattr(value, "index", ()) if hasattr(value, "items") else ()
+    names = getattr(value, "columns", names)
+    if hasattr(value, "coords") and hasattr(value, "dims") and len(value.dims):
+        names = value.coords[value.dims[-1]].values if value.dims[-1] in value.coords else ()
+    if callable(names) or len(names) > MOST_LABELS or not all(isinstance(name, str | tuple) for name in names):
+        return []
+    return [name if isinstance(name, str) else " ".join(map(str, name)) for name in names]
+
+
+def in_order(names: list[str]) -> bool:
+    """Return True if names follow each other as x, y, z or y1, y2, y10."""
+    padded = [re.sub(r"\d+", lambda digits: digits[0].zfill(9), name.lower()) for name in names]
+    return padded == sorted(padded)
 
 
 def is_table(value: Any) -> bool:
     """Return True for a table whose columns have names and are numbers."""
     found = columns(value) or {}
-    return bool(found) and all(isinstance(n, str) and are_numbers(plain(column)) for n, column in found.items())
+    if not found or len(found) < len(getattr(value, "columns", ())):  # none, or a name stands twice
+        return False
+    return all(isinstance(n, str) and are_numbers(plain(column)) for n, column in found.items())

@@ -55,6 +55,7 @@ A, B = np.array([[0, 0.1, 0], [0, 0, 0], [0, 0, 0.1]]), np.array([0.3, 0.1, 0.2]
 PLACES, TURNS = np.outer(T, [1, 0, 0]), Rotation.from_rotvec(np.outer(T, [0, 0, 0.1]))
 WXYZ = pd.DataFrame(np.roll(TURNS.as_quat(), 1, axis=1), columns=["qw", "qx", "qy", "qz"])
 SCENE, NOISY, Y3 = scenarios.ma2005_eq35(), Camera(0.1, Gaussian(0.01)), sp.Symbol("y3")
+TRUTH = np.column_stack([SEEN, np.full(11, 0.5)])
 SHORT, OBSERVER, IN_FOUR = record(SCENE, 1, Camera(0.1)), ibo(BOTH), Figure().subplots(4)
 RUN = track(SHORT, OBSERVER)
 
@@ -75,6 +76,25 @@ class Tensor:
 
     def __array__(self, dtype=None, copy=None):
         return np.array(self.values, dtype)
+
+
+def with_gradient(values):
+    """What torch has of a tensor that keeps its gradient: an array after `detach` only."""
+
+    class Gradient:
+        def __array__(self, dtype=None, copy=None):
+            raise RuntimeError("call detach() first")
+
+        def detach(self):
+            return np.array(values)
+
+    return Gradient()
+
+
+def labelled(values, names, order):
+    """An array of xarray whose entries of a row have names, in another order."""
+    values = np.asarray(values)[..., order]
+    return xr.DataArray(values, coords={"name": names.split()}, dims=["row", "name"][-values.ndim :])
 
 
 class Quantity(Tensor):
@@ -102,6 +122,13 @@ CALLS = [
         (xr.Dataset({name: ("time", FRAME[name]) for name in FRAME}), GAP, xr.Dataset({"y1": ("time", T)}), "needs y2"),
         (np.asfortranarray(SEEN), SEEN, np.asfortranarray(SEEN.T), r"outputs of shape \(2, 11\)"),
     ]),
+    (lambda outputs: seen(outputs=outputs, names=["y1"]), [
+        (SEEN[:, 0], SEEN[:, :1], SEEN.ravel(), "the times come first"),
+    ]),
+    (lambda truth: seen(truth=truth).truth, [
+        (labelled(TRUTH, "y3 y1 y2", [2, 0, 1]), TRUTH, labelled(TRUTH, "u v w", [0, 1, 2]), "it needs y1, y2, y3"),
+        (FRAME.assign(y3=T + 1), np.c_[GAP, T + 1], FRAME, "it needs y3: rename them, or fill them with NaN"),
+    ]),
     (lambda laser: seen(distances={"laser": laser}), [
         (pd.Series([1, None] * 5 + [2], dtype="Int64"), [1, np.nan] * 5 + [2], [1, None] * 5 + [-2], "positive"),
     ]),
@@ -128,6 +155,21 @@ CALLS = [
     (lambda orientations: Poses(T, PLACES, orientations), [
         (TURNS, TURNS.as_quat(), TURNS[:5], "expected 11 rows"),
         (WXYZ, TURNS.as_quat(), WXYZ[["qx", "qy", "qz"]], "a quaternion is x, y, z, w"),
+        (pd.Series(list(TURNS.as_quat())), TURNS.as_quat(), pd.Series(["0 0 0 1"] * 11), "orientation is a Series"),
+    ]),
+    (lambda turn: Poses(T, PLACES, TURNS).mounted(sp.Matrix([0, 0, 1]), turn), [
+        (pd.Series({"qw": 0.8, "qx": 0.6, "qy": 0, "qz": 0}), [0.6, 0, 0, 0.8], [0.6, 0, 0], "of a quaternion"),
+    ]),
+    (lambda sigma: Poses(T, PLACES, TURNS, sigma), [((0.01, sp.pi / 90), (0.01, np.pi / 90), (0.01, 2.0), "radians")]),
+    (pinhole().project, [
+        (pd.Series({"X": 1, "Y": 2, "Z": 4}), [1, 2, 4], pd.Series({"Z": 4, "X": 1, "Y": 2}), "labels Z, X, Y, and"),
+        (with_gradient([1.0, 2, 4]), [1, 2, 4], with_gradient(["a"]), "points is a Gradient"),
+    ]),
+    (PixelCamera((500, 500), (320, 240)).image, [
+        (pd.DataFrame({"u": [820], "v": [240]}), [[820, 240]], pd.DataFrame({"v": [240], "u": [820]}), "labels v, u"),
+    ]),
+    (lambda v: rigid(camera_velocity=v), [
+        (pd.Series([1, 2, 3], ["vx", "vy", "vz"]), [1, 2, 3], pd.Series([3, 1, 2], ["vz", "vx", "vy"]), "in order"),
     ]),
     (lambda orientations: rigid_from_poses(T, PLACES, orientations), [
         (list(TURNS), TURNS.as_quat(), list(TURNS.as_rotvec()), "a quaternion is x, y, z, w"),
@@ -159,10 +201,14 @@ CALLS = [
         ({Y3: 0.5}, {"y3": 0.5}, {2 * Y3: 0.5}, "expected a mapping from text"),
         (pd.Series({"y3": 0.5, "y1": 0.1, "y2": 0.2}), [0.1, 0.2, 0.5], pd.Series({"y4": 0.5}), "no coordinate y4"),
         ([[0.1], [0.2], [0.5]], [0.1, 0.2, 0.5], [[0.1, 0.2, 0.5]] * 2, "expected a mapping from text"),
+        (labelled([0.1, 0.2, 0.5], "y3 y1 y2", [2, 0, 1]), [0.1, 0.2, 0.5], {"y3": 0.4, Y3: 0.5}, "a mapping"),
     ]),
     (lambda over: ensemble(SCENE, OBSERVER, over, duration=0.5, camera=NOISY).rms.values, [
         ({sp.Symbol("gain"): [2, 3]}, {"gain": [2, 3]}, {sp.Symbol("G"): [2, 3]}, "over has G, which cannot vary"),
         ({"gain": iter([2, 3])}, {"gain": [2, 3]}, {"gain": iter("ab")}, "over gain is the list"),
+        ({"gain": 2.0}, {"gain": [2]}, {"gain": "2"}, "over gain is the text"),
+        ({"gain": sp.Matrix([2, 3])}, {"gain": [2, 3]}, {"gain": np.eye(2) + 1}, r"values of shape \(2, 2\)"),
+        ({"gain": {"a": 2, "b": 3}.values()}, {"gain": [2, 3]}, {"gain": {"a": 2}}, "over gain is the dict"),
     ]),
     (AFFINE.measure, [(AFFINE.coordinates[0], "y1", AFFINE.coordinates[2], "cannot measure 'y3'")]),
     (lambda c: PerspectiveSystem(affine(sp.zeros(3), [c, 0, 0]), pinhole()).rate, [
@@ -188,7 +234,15 @@ CALLS = [
     (lambda P: cramer_rao(record(SCENE, 1, NOISY), BOTH, P).covariance, [
         (pd.DataFrame(np.eye(3)), np.eye(3), pd.DataFrame(-np.eye(3)), "definite"),
     ]),
+    (lambda noise: cramer_rao(SHORT, BOTH, noise_variance=noise).covariance, [
+        (pd.Series({"y2": 2e-4, "y1": 1e-4}), [1e-4, 2e-4], {"y1": 1e-4}, "names y1; name all of y1, y2"),
+    ]),
     (lambda settings: dict(observer_lab(**settings).settings), [
+        ({"b": sp.Matrix([1, 0, 2])}, {"b": [1, 0, 2]}, {"b": [[1, 2, 3]]}, "a list of 3"),
+        ({"outputs": sp.Symbol("y1")}, {"outputs": ["y1"]}, {"outputs": Y3}, "at least one of y1, y2"),
+        ({"seed": 3.0}, {"seed": 3}, {"seed": 3.5}, "seed is 3.5"),
+        ({"noise": Gaussian(0.01)}, {"noise": {"kind": "gaussian", "size": 0.01}}, {"noise": Camera()}, "a mapping of"),
+        ({"X0": pd.Series([1, 1, 3], [*"XYZ"])}, {"X0": [1, 1, 3]}, {"X0": pd.Series([3, 1, 1], [*"ZXY"])}, "Z, X, Y"),
         ({"duration": Decimal(5)}, {"duration": 5}, {"duration": "5"}, "duration is '5'"),
         ({"X0": pd.Series([1, 1, 3])}, {"X0": [1, 1, 3]}, {"X0": pd.Series([1, 1])}, "a list of 3"),
         ({"observers": pd.Index(["de_luca"])}, {"observers": ["de_luca"]}, {"observers": {"de_luca"}}, "observers"),

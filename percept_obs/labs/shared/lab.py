@@ -9,6 +9,7 @@ from __future__ import annotations
 import warnings
 import weakref
 from collections.abc import Callable, Mapping
+from dataclasses import astuple
 from inspect import cleandoc
 from os import PathLike
 from types import MappingProxyType
@@ -178,6 +179,9 @@ class Lab(anywidget.AnyWidget):
 
     def check(self, settings: Settings) -> Settings:
         """Complete settings, or a ValueError that says what is wrong."""
+        for kind, make in NOISES.items():
+            if isinstance(settings, Mapping) and type(settings.get("noise")) is make:
+                settings = {**settings, "noise": {"kind": kind, "size": astuple(settings["noise"])[0]}}
         whole = self.schema.read(settings, self._opening)
         self.refuse(whole)
         for name, reason in self.idle.items():

@@ -9,14 +9,16 @@ import reprlib
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, fields
-from numbers import Integral, Real
+from numbers import Real
 from operator import itemgetter
 from typing import Any
 
 import numpy as np
+import sympy as sp
 
 from percept_obs.observers import Observer
 from percept_obs.validation import plain
+from percept_obs.validation.plain import in_order, labels
 
 Settings = dict[str, Any]
 
@@ -41,6 +43,8 @@ class Kind:
 
     def read(self, name: str, value: object) -> Any:
         """The value as plain data, or a ValueError that says what is expected of the setting with this name."""
+        if not in_order(names := labels(value)):
+            raise ValueError(f"{name} has the labels {', '.join(names)}; give a list, in the order of {self.expected}")
         value = value if isinstance(value, list | tuple) else plain(value)  # None in a list is a choice
         value = value.tolist() if isinstance(value, np.ndarray | np.generic) else value
         if not self._allows(value):
@@ -83,9 +87,9 @@ class Number(Kind):
         return f"{kind} from {' to '.join(bounds)}{more}"
 
     def _allows(self, value: Any) -> bool:
-        kind: Any = Integral if self.whole else Real
-        number = isinstance(value, kind) and not isinstance(value, bool)
-        return number and self.low <= value <= self.high and not (self.nonzero and value == 0)
+        if not isinstance(value, Real) or isinstance(value, bool) or not self.low <= float(value) <= self.high:
+            return False
+        return not (self.whole and float(value) % 1) and not (self.nonzero and value == 0)
 
     def _read(self, name: str, value: Any) -> float:
         return int(value) if self.whole else float(value) + 0.0  # no -0.0
@@ -113,6 +117,11 @@ class Names(Kind):
     opening: Sequence[str] = ()
     names: Sequence[str] = ()
     least: int = 1
+
+    def read(self, name: str, value: object) -> Any:
+        """The names as a list; one of them, or symbols, mean theirs."""
+        value = [value] if isinstance(value, str | sp.Symbol) else value
+        return super().read(name, list(map(str, value)) if isinstance(value, list | tuple) else value)
 
     def _expected(self) -> str:
         return f"a list with {'at least one' if self.least else 'some'} of {', '.join(self.names)}, each once"
@@ -170,6 +179,8 @@ class Row(Kind):
         return isinstance(value, list | tuple) and len(value) == len(self.entries)
 
     def _read(self, name: str, value: Any) -> list[Any]:
+        if all(isinstance(entry, list | tuple) and len(entry) == 1 for entry in value):  # a column
+            value = [entry[0] for entry in value]
         entries = enumerate(zip(self.entries, value, strict=True), 1)
         return [kind.read(f"{name} {kind.label or k}", entry) for k, (kind, entry) in entries]
 
