@@ -18,6 +18,7 @@ from percept_obs.observers.base import Observer
 from percept_obs.observers.extended_kalman import ekf
 from percept_obs.observers.parts import first_seen, hats
 from percept_obs.recording import Recording
+from percept_obs.recording.reckoning import transitions
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
@@ -264,8 +265,6 @@ def servo(
     >>> bool(abs(run.depth_error[:, 0]).min() > 0.1 > abs(run.depth_error[:, -1]).max())
     True
     """
-    from scipy.linalg import expm
-
     poses = np.asarray(starts, dtype=float)
     if poses.ndim != 2 or poses.shape[1] != 6 or not len(poses) or not np.isfinite(poses).all():
         raise ValueError(f"starts have shape {poses.shape}; give finite rows of a translation and a rotation, (S, 6)")
@@ -313,11 +312,8 @@ def servo(
         u = np.where(lost[:, None], 0.0, u)
         for name, value in zip(rows, (x, y, believed, u, lost), strict=True):
             rows[name].append(value)
-        twist = np.zeros((len(u), 4, 4))
-        twist[:, :3, :3] = np.cross(u[:, None, 3:], np.eye(3))  # -[w_c]x
-        twist[:, :3, 3] = -u[:, :3]
-        moved = expm(PERIOD * twist)
-        next_points = points @ moved[:, :3, :3].swapaxes(1, 2) + moved[:, None, :3, 3]
+        moved = transitions(np.cross(u[:, None, 3:], np.eye(3)), -u[:, :3], PERIOD)  # by -[w_c]x and -v_c
+        next_points = points @ moved[:, :, :3].swapaxes(1, 2) + moved[:, None, :, 3]
         lost = lost | ~_in_sight(next_points)
         points = np.where(lost[:, None, None], points, next_points)
     found: dict[str, Any] = {name: np.stack(values, axis=1) for name, values in rows.items()}
