@@ -225,7 +225,8 @@ def all_observers(
         if first.distances:
             notes.append(f"To compare with what was measured, name references, such as {', '.join(first.distances)}")
         references = (label,)
-    ours, theirs = ([replace(each, unit=length) for each in half] for half in (choosing, reporting))
+    ours = [replace(_as_far_as(each, max(lasting)), unit=length) for each in choosing]
+    theirs = [replace(each, unit=length) for each in reporting]
     asked: dict[str, Callable[[Run], float]] = {
         f"{reference} {seconds:g} s": partial(error_at, after=seconds, reference=reference)
         for reference, seconds in product(references, lasting)
@@ -246,7 +247,7 @@ def all_observers(
     for make, gains in bar(tried.items(), "choosing gains", unit="observer"):
         refusal = make.refusal(form)
         try:
-            settled = [] if refusal else [make(form, **each) for each in gains]
+            settled = [] if refusal else _settled(make, form, gains)
             chosen = best_setting(ours, settled, follow, lasting, references[0]) if settled else None
         except DoesNotFit as error:
             refusal, chosen = str(error), None
@@ -267,6 +268,21 @@ def all_observers(
     if blind:
         table.loc[table["observer"] == references[0], errors] = np.nan
     return Comparison(table, choosing, reporting, left_out, start, tuple(notes))
+
+
+def _as_far_as(recording: Recording, seconds: float) -> Recording:
+    """Part of a recording as far as errors are looked at, up to a sample so many seconds after the first one."""
+    late = recording.time[1:][from_the_start(recording.elapsed[1:], seconds)]
+    return recording.between(float(recording.time[0]), float(late[0])) if len(late) else recording
+
+
+def _settled(make: Family | FunctionObserver, form: PartitionedSystem, gains: Sequence[Gains]) -> list[Any]:
+    """Observers with each of some gains, derived once if these are numbers of the same equations."""
+    first, names = make(form, **gains[0]), gains[0].keys()
+    alike = all(each.keys() == names for each in gains)
+    if alike and isinstance(first, Observer) and names <= {gain.name for gain in first.gains}:
+        return [first.with_gains(**each) for each in gains]
+    return [make(form, **each) for each in gains]
 
 
 def _halves(recordings: list[Recording], split: Split) -> tuple[list[Recording], list[Recording]]:
