@@ -225,8 +225,7 @@ def all_observers(
         if first.distances:
             notes.append(f"To compare with what was measured, name references, such as {', '.join(first.distances)}")
         references = (label,)
-    ours = [replace(_as_far_as(each, max(lasting)), unit=length) for each in choosing]
-    theirs = [replace(each, unit=length) for each in reporting]
+    ours, theirs = ([replace(each, unit=length) for each in half] for half in (choosing, reporting))
     asked: dict[str, Callable[[Run], float]] = {
         f"{reference} {seconds:g} s": partial(error_at, after=seconds, reference=reference)
         for reference, seconds in product(references, lasting)
@@ -268,12 +267,6 @@ def all_observers(
     if blind:
         table.loc[table["observer"] == references[0], errors] = np.nan
     return Comparison(table, choosing, reporting, left_out, start, tuple(notes))
-
-
-def _as_far_as(recording: Recording, seconds: float) -> Recording:
-    """Part of a recording as far as errors are looked at, up to a sample so many seconds after the first one."""
-    late = recording.time[1:][from_the_start(recording.elapsed[1:], seconds)]
-    return recording.between(float(recording.time[0]), float(late[0])) if len(late) else recording
 
 
 def _settled(make: Family | FunctionObserver, form: PartitionedSystem, gains: Sequence[Gains]) -> list[Any]:

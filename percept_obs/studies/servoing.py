@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags, vectorised
 from percept_obs.compile.integrator import LONGEST_STEP, STEP_ROUNDING, step
-from percept_obs.observability.steering import steering
+from percept_obs.observability.steering import Steering, steering
 from percept_obs.observers.base import Observer
 from percept_obs.observers.extended_kalman import ekf
 from percept_obs.observers.parts import first_seen, hats
@@ -25,8 +25,7 @@ from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import bar, checked, limit, one_of, positive
 
 SYSTEM = PerspectiveSystem(rigid(), pinhole())
-STEERING = steering(SYSTEM)
-FORM = STEERING.form
+FORM = SYSTEM.measure("y1", "y2")
 VELOCITIES = (*SYSTEM.motion.parameters[3:6], *SYSTEM.motion.parameters[:3])
 """Symbols of the commanded velocity v_c and angular velocity w_c of the camera."""
 
@@ -123,7 +122,7 @@ class Servoing:
     def excitation(self) -> Array:
         """|w|^2 in m^2/s^2, which multiplies the inverse depth in the image's rate, shape (S, K, p); see `steering`."""
         seen = np.moveaxis(self.coordinates, -1, 0)
-        return vectorised(KNOWN, [STEERING.excitation])(*seen, *_parameters(self.velocity))[0]
+        return vectorised(KNOWN, [_steering().excitation])(*seen, *_parameters(self.velocity))[0]
 
     def camera(self, start: int = 0) -> Array:
         """Places of the camera in the axes that it has at the goal, in metres, shape (K, 3)."""
@@ -151,8 +150,10 @@ class Servoing:
         )
 
 
-_interaction = vectorised(SYSTEM.coordinates, list(INTERACTION))
-_turning = vectorised(KNOWN, list(STEERING.turning))
+@lru_cache(maxsize=1)
+def _steering() -> Steering:
+    """Excitation and its gradient, derived when asked for: figures import this module."""
+    return steering(SYSTEM)
 
 
 def _parameters(velocity: Array) -> Array:
@@ -284,6 +285,7 @@ def servo(
             f"noise is {noise}, looking {looking} and seed {seed}; give a noise in image coordinates, below "
             f"{FIELD:g}, and a speed and a whole number from 0 on"
         )
+    interaction = vectorised(SYSTEM.coordinates, list(INTERACTION))
     generator, surface, steps = np.random.default_rng(seed), SYSTEM.surface, round(duration / PERIOD) + 1
     goal = surface.project(GOAL)
     points = _points(poses)
@@ -303,10 +305,10 @@ def servo(
         else:
             believed = (x[..., 2] if depth == "true" else np.broadcast_to(goal[:, 2], y.shape[:2])) / ratio
         seen = np.moveaxis(np.concatenate([y, believed[..., None]], axis=-1), -1, 0)
-        L = np.stack(_interaction(*seen), axis=-1).reshape(len(y), -1, 6)
+        L = np.stack(interaction(*seen), axis=-1).reshape(len(y), -1, 6)
         u = -gain * (np.linalg.pinv(L) @ e[:, :, None])[..., 0]
         if looking:
-            turn = np.stack(_turning(*seen, *_parameters(u))).sum(axis=-1).T
+            turn = np.stack(vectorised(KNOWN, list(_steering().turning))(*seen, *_parameters(u))).sum(axis=-1).T
             turn /= np.linalg.norm(turn, axis=1, keepdims=True)
             u[:, :3] += looking * np.linalg.norm(e, axis=1, keepdims=True) * np.nan_to_num(turn)
         u = np.where(lost[:, None], 0.0, u)
