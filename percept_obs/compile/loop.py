@@ -220,16 +220,22 @@ def take_out(
     def named(term: sp.Expr) -> sp.Symbol:
         return fixed.setdefault(term, sp.Symbol(f"{letter}{len(fixed)}", real=True))
 
-    if not expression.args or not expression.free_symbols & gains:
+    if not expression.args or not _symbols(expression) & gains:
         return expression
-    if isinstance(expression, sp.Expr) and expression.free_symbols <= gains:
+    if isinstance(expression, sp.Expr) and _symbols(expression) <= gains:
         return named(expression)
     if isinstance(expression, sp.Mul | sp.Add):
-        constant = [e for e in expression.args if e.free_symbols and e.free_symbols <= gains]
+        constant = [e for e in expression.args if _symbols(e) and _symbols(e) <= gains]
         if len(constant) > 1:
             rest = [e for e in expression.args if e not in constant]
             expression = expression.func(named(expression.func(*constant)), *rest)
     return expression.func(*(take_out(e, gains, fixed, letter) for e in expression.args))
+
+
+@lru_cache(maxsize=10_000)
+def _symbols(expression: sp.Basic) -> frozenset[sp.Basic]:
+    """Symbols of an expression, from those of its parts, which recur."""
+    return frozenset({expression} if expression.is_Symbol else ()).union(*map(_symbols, expression.args))
 
 
 def numbered(letter: str, symbols: Symbols) -> dict[sp.Symbol, sp.Symbol]:

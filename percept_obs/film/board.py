@@ -182,7 +182,9 @@ def other_markers(picture: Any) -> list[str]:
             numbers = detector.detectMarkers(shown)[1]
             known = 0 if numbers is None else len(np.unique(numbers))
             ours = family == FAMILIES[0] and known and np.median(numbers) < 50  # one may be read wrong
-            if known >= FEWEST_MARKERS and (colours or not ours):
+            if known >= FEWEST_MARKERS and ours and not colours:
+                return []
+            if known >= FEWEST_MARKERS:
                 which = f"the dictionary {DICTIONARY}" if ours else f"another dictionary, {family}"
                 found.append((known, f"markers {colours}{which}"))
     return [max(found)[1]] if found else []

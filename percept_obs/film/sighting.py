@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 from zipfile import BadZipFile
@@ -80,7 +80,8 @@ def sight(video: Video, board: Board) -> Sighting:
 
     with open(video.path, "rb") as file:
         content = hashlib.file_digest(file, "sha256").hexdigest()
-    name = hashlib.sha256(json.dumps([VERSION, content, asdict(board)]).encode()).hexdigest()
+    squares = board.columns, board.rows, round(board.marker / board.square, 9)  # whose size in metres no picture shows
+    name = hashlib.sha256(json.dumps([VERSION, content, squares]).encode()).hexdigest()
     kept = user_cache_path("percept_obs") / "films" / f"{name[:32]}.npz"
     try:
         with open(kept, "rb") as file, np.load(file) as parts:

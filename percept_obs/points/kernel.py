@@ -114,7 +114,7 @@ if TYPE_CHECKING:  # names in the text of the next functions, which `source` def
         """Fill an array with a point's correction and S, as in `PointBlock.source`."""
 
 
-def move(target: Array, start: Array, length: float, shares: Array, rates: list[Array]) -> None:
+def move(target: Array, start: Array, length: float, shares: Array, rates: Array) -> None:
     """Set the target to start + length times the sum of the stages' rates, weighted by their shares."""
     for j in range(len(shares)):
         if shares[j] != 0.0:
@@ -191,9 +191,8 @@ def run(
     size = n if law[0] else 0
     # estimate and computed P in one vector, so that a step moves both at once
     now, stage = np.zeros(n + size * size), np.zeros(n + size * size)
-    rates = [np.zeros(len(now)) for _ in WEIGHTS]
+    rates = np.zeros((len(WEIGHTS), len(now)))  # no list, which numba takes long to compile
     x_stage, P_stage = stage[:n], stage[n:].reshape(size, size)
-    dx, dP = [along[:n] for along in rates], [along[n:].reshape(size, size) for along in rates]
     combine(now[:n], x, 0.0, x)
     for i in range(size):
         combine(now[n + i * size : n + (i + 1) * size], P[i], 0.0, P[i])
@@ -207,7 +206,8 @@ def run(
             move(stage, now, steps[k], COUPLING[i], rates)
             if not size:
                 P_stage = inverses[row if len(inverses) > 1 else 0]
-            rate(form, law, x_stage, P_stage, known, outputs[k, PLACES[i]], dx[i], dP[i])
+            dx, dP = rates[i, :n], rates[i, n:].reshape(size, size)
+            rate(form, law, x_stage, P_stage, known, outputs[k, PLACES[i]], dx, dP)
         move(now, now, steps[k], WEIGHTS, rates)
         combine(path[k + 1], now[:n], 0.0, now[:n])
         squared = 0.0

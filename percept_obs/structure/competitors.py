@@ -86,8 +86,9 @@ def scale_spread(
     depth: DepthSource = EXACT_DEPTH,
     windows: Sequence[tuple[float, float]] = ((9.0, 10.0),),
     seed: int = 0,
+    observers: Sequence[str] | None = None,
 ) -> pd.DataFrame:
-    """Scatter of d_s in case IV.A of the experiment, for every observer and every ratio of noise.
+    """Scatter of d_s in case IV.A of the experiment, for observers and ratios of noise.
 
     Parameters
     ----------
@@ -99,6 +100,8 @@ def scale_spread(
         Times in seconds between which the scatter is taken.
     seed : int
         Of the noise, the same for all.
+    observers : sequence of str, optional
+        Names of some `competitors`; all of them when left out.
 
     Returns
     -------
@@ -109,7 +112,7 @@ def scale_spread(
     Raises
     ------
     ValueError
-        If there is no ratio or no window, or a window ends before it begins.
+        If there is no ratio or no window, a window ends before it begins, or an observer is none of the competitors.
 
     See Also
     --------
@@ -133,7 +136,11 @@ def scale_spread(
     for ratio in decibels:
         camera = ScaledDepthCamera(pixels=CHWA_CAMERA, ratio=SignalToNoise(ratio), depth=depth)
         recording = record(setup, max(end for _, end in windows), camera, seed)
-        for name, (seen, observer) in competitors(recording).items():
+        entrants = competitors(recording)
+        for name in entrants if observers is None else observers:
+            if name not in entrants:
+                raise ValueError(f"{name!r} is none of the competitors; they are {', '.join(entrants)}")
+            seen, observer = entrants[name]
             run = track(seen, observer, hold="first", step=1e-3)
             for begin, end in windows:
                 found = run.estimate[(run.time >= begin) & (run.time <= end), 3]

@@ -246,7 +246,7 @@ def all_observers(
     for make, gains in bar(tried.items(), "choosing gains", unit="observer"):
         refusal = make.refusal(form)
         try:
-            settled = [] if refusal else [make(form, **each) for each in gains]
+            settled = [] if refusal else _settled(make, form, gains)
             chosen = best_setting(ours, settled, follow, lasting, references[0]) if settled else None
         except DoesNotFit as error:
             refusal, chosen = str(error), None
@@ -267,6 +267,15 @@ def all_observers(
     if blind:
         table.loc[table["observer"] == references[0], errors] = np.nan
     return Comparison(table, choosing, reporting, left_out, start, tuple(notes))
+
+
+def _settled(make: Family | FunctionObserver, form: PartitionedSystem, gains: Sequence[Gains]) -> list[Any]:
+    """Observers with each of some gains, derived once if these are numbers of the same equations."""
+    first, names = make(form, **gains[0]), gains[0].keys()
+    alike = all(each.keys() == names for each in gains)
+    if alike and isinstance(first, Observer) and names <= {gain.name for gain in first.gains}:
+        return [first.with_gains(**each) for each in gains]
+    return [make(form, **each) for each in gains]
 
 
 def _halves(recordings: list[Recording], split: Split) -> tuple[list[Recording], list[Recording]]:

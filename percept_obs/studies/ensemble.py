@@ -33,6 +33,9 @@ Start = Mapping[str, float] | Sequence[float] | None
 CHUNK = 2048
 """Runs that are computed together unless asked otherwise."""
 
+NUMPY_LINES, NUMPY_RUN = 10, 1 / 40
+"""What numpy's loop costs in a step for each chunk and for each run in it, in steps of one run in Python."""
+
 MOST_RUNS = 10_000_000
 """Runs that one ensemble may have: about 1 GiB of statistics."""
 
@@ -158,7 +161,7 @@ def ensemble(
         step,
         tolerance,
         after,
-        choose(language, runs * steps),
+        choose(language, steps * (runs * NUMPY_RUN + -(-runs // chunk) * NUMPY_LINES)),
     )
     _refuse_values(plan)
     results = np.zeros((runs, len(STATISTICS)))

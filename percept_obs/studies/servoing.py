@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -13,19 +13,19 @@ from numpy.typing import ArrayLike
 
 from percept_obs.compile import Array, Flags, vectorised
 from percept_obs.compile.integrator import LONGEST_STEP, STEP_ROUNDING, step
-from percept_obs.observability.steering import steering
+from percept_obs.observability.steering import Steering, steering
 from percept_obs.observers.base import Observer
 from percept_obs.observers.extended_kalman import ekf
 from percept_obs.observers.parts import first_seen, hats
 from percept_obs.recording import Recording
+from percept_obs.recording.reckoning import transitions
 from percept_obs.system.motion import rigid
 from percept_obs.system.perspective import PerspectiveSystem
 from percept_obs.system.surfaces import pinhole
 from percept_obs.validation import bar, checked, limit, one_of, positive
 
 SYSTEM = PerspectiveSystem(rigid(), pinhole())
-STEERING = steering(SYSTEM)
-FORM = STEERING.form
+FORM = SYSTEM.measure("y1", "y2")
 VELOCITIES = (*SYSTEM.motion.parameters[3:6], *SYSTEM.motion.parameters[:3])
 """Symbols of the commanded velocity v_c and angular velocity w_c of the camera."""
 
@@ -122,7 +122,7 @@ class Servoing:
     def excitation(self) -> Array:
         """|w|^2 in m^2/s^2, which multiplies the inverse depth in the image's rate, shape (S, K, p); see `steering`."""
         seen = np.moveaxis(self.coordinates, -1, 0)
-        return vectorised(KNOWN, [STEERING.excitation])(*seen, *_parameters(self.velocity))[0]
+        return vectorised(KNOWN, [_steering().excitation])(*seen, *_parameters(self.velocity))[0]
 
     def camera(self, start: int = 0) -> Array:
         """Places of the camera in the axes that it has at the goal, in metres, shape (K, 3)."""
@@ -150,8 +150,10 @@ class Servoing:
         )
 
 
-_interaction = vectorised(SYSTEM.coordinates, list(INTERACTION))
-_turning = vectorised(KNOWN, list(STEERING.turning))
+@lru_cache(maxsize=1)
+def _steering() -> Steering:
+    """Excitation and its gradient, derived when asked for: figures import this module."""
+    return steering(SYSTEM)
 
 
 def _parameters(velocity: Array) -> Array:
@@ -264,8 +266,6 @@ def servo(
     >>> bool(abs(run.depth_error[:, 0]).min() > 0.1 > abs(run.depth_error[:, -1]).max())
     True
     """
-    from scipy.linalg import expm
-
     poses = np.asarray(starts, dtype=float)
     if poses.ndim != 2 or poses.shape[1] != 6 or not len(poses) or not np.isfinite(poses).all():
         raise ValueError(f"starts have shape {poses.shape}; give finite rows of a translation and a rotation, (S, 6)")
@@ -285,6 +285,7 @@ def servo(
             f"noise is {noise}, looking {looking} and seed {seed}; give a noise in image coordinates, below "
             f"{FIELD:g}, and a speed and a whole number from 0 on"
         )
+    interaction = vectorised(SYSTEM.coordinates, list(INTERACTION))
     generator, surface, steps = np.random.default_rng(seed), SYSTEM.surface, round(duration / PERIOD) + 1
     goal = surface.project(GOAL)
     points = _points(poses)
@@ -304,20 +305,17 @@ def servo(
         else:
             believed = (x[..., 2] if depth == "true" else np.broadcast_to(goal[:, 2], y.shape[:2])) / ratio
         seen = np.moveaxis(np.concatenate([y, believed[..., None]], axis=-1), -1, 0)
-        L = np.stack(_interaction(*seen), axis=-1).reshape(len(y), -1, 6)
+        L = np.stack(interaction(*seen), axis=-1).reshape(len(y), -1, 6)
         u = -gain * (np.linalg.pinv(L) @ e[:, :, None])[..., 0]
         if looking:
-            turn = np.stack(_turning(*seen, *_parameters(u))).sum(axis=-1).T
+            turn = np.stack(vectorised(KNOWN, list(_steering().turning))(*seen, *_parameters(u))).sum(axis=-1).T
             turn /= np.linalg.norm(turn, axis=1, keepdims=True)
             u[:, :3] += looking * np.linalg.norm(e, axis=1, keepdims=True) * np.nan_to_num(turn)
         u = np.where(lost[:, None], 0.0, u)
         for name, value in zip(rows, (x, y, believed, u, lost), strict=True):
             rows[name].append(value)
-        twist = np.zeros((len(u), 4, 4))
-        twist[:, :3, :3] = np.cross(u[:, None, 3:], np.eye(3))  # -[w_c]x
-        twist[:, :3, 3] = -u[:, :3]
-        moved = expm(PERIOD * twist)
-        next_points = points @ moved[:, :3, :3].swapaxes(1, 2) + moved[:, None, :3, 3]
+        moved = transitions(np.cross(u[:, None, 3:], np.eye(3)), -u[:, :3], PERIOD)  # by -[w_c]x and -v_c
+        next_points = points @ moved[:, :, :3].swapaxes(1, 2) + moved[:, None, :, 3]
         lost = lost | ~_in_sight(next_points)
         points = np.where(lost[:, None, None], points, next_points)
     found: dict[str, Any] = {name: np.stack(values, axis=1) for name, values in rows.items()}

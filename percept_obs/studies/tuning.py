@@ -14,6 +14,7 @@ from percept_obs.compile import Array
 from percept_obs.observers.base import Observer
 from percept_obs.recording import Recording
 from percept_obs.studies.comparison import Follow, relative_distance_errors
+from percept_obs.system.signal import from_the_start
 from percept_obs.tracking.following import AnyObserver, StepTooLong
 from percept_obs.tracking.run import Run
 from percept_obs.validation import bar, checked, of_kind, once
@@ -52,7 +53,7 @@ def best_setting(
     observers : iterable of Observer
         One structure with different gains, or several structures.
     follow : function of (recording, observer)
-        Runs an observer, for instance ``lambda r, o: track(r, o, start)``.
+        Runs an observer, for instance ``lambda r, o: track(r, o, start)``; it is given recordings as far as `after`.
     after : sequence of float
         Seconds since the first sample.
     reference : str
@@ -84,14 +85,22 @@ def best_setting(
             "each is needed to choose the best"
         )
 
+    parts = [_as_far_as(each, max(after)) for each in recordings]
+
     def score(observer: Observer) -> float:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", StepTooLong)  # a chattering candidate has large errors, so it is not chosen
-            runs = _followed(recordings, observer, follow)
+            runs = _followed(parts, observer, follow)
         total = float(sum(np.median(relative_distance_errors(runs, seconds, reference)) for seconds in after))
         return math.inf if math.isnan(total) else total  # a run that diverged is never the best
 
     return candidates[int(np.argmin([score(each) for each in bar(candidates, "candidates")]))]
+
+
+def _as_far_as(recording: Recording, seconds: float) -> Recording:
+    """Part of a recording as far as errors are looked at, up to a sample so many seconds after the first one."""
+    late = recording.time[1:][from_the_start(recording.elapsed[1:], seconds)]
+    return recording.between(float(recording.time[0]), float(late[0])) if len(late) else recording
 
 
 def _followed(recordings: Sequence[Recording], observer: AnyObserver, follow: Follow) -> list[Run]:

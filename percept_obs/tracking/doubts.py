@@ -29,6 +29,7 @@ SPLIT = 500
 def images_backwards(recording: Recording, first: int, columns: list[int]) -> Callable[[Array], Array]:
     """Return a function from the coordinates at the end and the doubts to some outputs at the samples from `first` on.
 
+    It takes arrays of shape (..., n), and returns arrays of shape (..., K, m).
     The translation b becomes (1 + a s) b + d x b, with the drift a, the direction's error d, and s from -1 at the first
     sample of the recording to 0 at its end.  Images do not change when the point and b are scaled, so that the flow of
     (X, 1, a, d) times the inverse distance gives them, be the point infinitely far away.
@@ -45,17 +46,19 @@ def images_backwards(recording: Recording, first: int, columns: list[int]) -> Ca
     rows = by_step(rate)
     between = step(np.eye(size), np.diff(grid[::-1])[:, None, None], lambda instant, map_: rows[:, instant] @ map_)
     maps = np.stack([*accumulate(between, lambda at, map_: map_ @ at, initial=np.eye(size))])[::-1][index, :3]
+    flat = maps.reshape(-1, size).T
     chosen = [surface.image[names.index(recording.names[k])] for k in columns]
     shape = {symbol: surface.values[symbol] for symbol in surface.parameters}
     seen = vectorised((*POINT, *surface.radii), (*chosen, *surface.bounds), shape)
     sizes = [names.index(str(size)) for size in surface.radii.values()]  # a radius at the distance 1 is seen as it is
 
     def images(x: Array) -> Array:
-        image, inverse, doubts = np.split(x, [len(names), len(names) + 1])
-        points = maps @ np.concatenate([surface.along(image), inverse, inverse * doubts])
+        image, inverse, doubts = np.split(x, [len(names), len(names) + 1], axis=-1)
+        directions = np.concatenate([surface.along(image), inverse, inverse * doubts], axis=-1)
+        points = np.moveaxis((directions @ flat).reshape(*x.shape[:-1], -1, 3), -1, 0)
         with np.errstate(all="ignore"):
-            found = np.stack(seen(*points.T, *image[sizes]), axis=-1)
-        there = np.asarray(np.isfinite(found).all(axis=1) & (found[:, len(chosen) :] > 0).all(axis=1))
-        return np.where(there[:, None], found[:, : len(chosen)], FAR)
+            found = np.stack(seen(*points, *np.moveaxis(image[..., None, sizes], -1, 0)), axis=-1)
+        there = np.isfinite(found).all(axis=-1) & (found[..., len(chosen) :] > 0).all(axis=-1)
+        return np.where(there[..., None], found[..., : len(chosen)], FAR)
 
     return images

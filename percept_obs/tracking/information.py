@@ -137,6 +137,12 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         if free < 1 or not seen.any(axis=0).all():
             return np.full(size, np.nan), math.inf, 0.0, 0.0
         images = images_backwards(recording, first, columns)
+
+        def slopes(x: Array) -> Array:  # of the images, all at once, shape (n, K, m)
+            steps = np.where(x, LIMITS.small * x, math.sqrt(np.finfo(float).eps))
+            found = images(np.vstack([x, x + np.diag(steps)]))
+            return np.asarray((found[1:] - found[0]) / steps[:, None, None])
+
         plain = np.zeros(size + len(DOUBTS))
         plain[places] = [column[np.isfinite(column)][-1] for column in samples.T]
         begins = [plain, *(np.append(guess * scale, plain[size:]) for guess in guesses)]
@@ -148,7 +154,10 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
             def residuals(x: Array, noise: Array = noise) -> Array:
                 return np.append(((images(x) - samples) / noise)[seen], x[size:] / np.array(DOUBTS))
 
-            solution = least_squares(residuals, start, x_scale="jac", diff_step=LIMITS.small, max_nfev=50)
+            def jacobian(x: Array, noise: Array = noise) -> Array:
+                return np.vstack([(slopes(x) / noise)[:, seen].T, np.eye(len(x))[size:] / np.array(DOUBTS)[:, None]])
+
+            solution = least_squares(residuals, start, jacobian, x_scale="jac", max_nfev=50)
             start, rest = solution.x, np.where(seen, samples - images(solution.x), 0.0)
             spread = np.sqrt((rest**2).sum(axis=0) * seen.sum() / (free * seen.sum(axis=0)))
             if _inflation(rest / np.maximum(spread, finest), time) > 1:  # residuals drift: trust all outputs alike
@@ -166,7 +175,10 @@ def one_point(form: PartitionedSystem, recording: Recording) -> Fit:
         def residuals_alone(x: Array) -> Array:  # without the doubts, which hide a wrong focal length as well
             return np.where(seen, images(np.append(x, plain[size:])) - samples, 0.0).ravel() / finest
 
-        alone = least_squares(residuals_alone, start[:size], x_scale="jac", diff_step=LIMITS.small, max_nfev=50)
+        def jacobian_alone(x: Array) -> Array:
+            return np.where(seen, slopes(np.append(x, plain[size:]))[:size], 0.0).reshape(size, -1).T / finest
+
+        alone = least_squares(residuals_alone, start[:size], jacobian_alone, x_scale="jac", max_nfev=50)
         rest = residuals_alone(alone.x).reshape(samples.shape) * finest
         if not (left := _left(rest, free, recording)):
             return estimate, deviation, 0.0, drift

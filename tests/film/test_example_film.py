@@ -52,7 +52,7 @@ def test_it_shows_the_board_and_the_camera_is_found(made):
     off = [film.sighting.corners[k] - made[1].corners(k) for k in range(len(film.sighting.time))]
     assert np.isfinite(off).mean() > 0.95
     assert np.sqrt(np.nanmean(np.square(off))) < 0.15
-    assert film.camera.focal[0] == pytest.approx(540, rel=3 * film.focal_deviation)
+    assert film.camera.focal[0] == pytest.approx(405, rel=3 * film.focal_deviation)
 
 
 @pytest.mark.slow

@@ -35,8 +35,9 @@ def test_scatter_with_an_exact_inverse_depth():
 
 
 def test_scatter_grows_with_time_unless_the_slope_stays():
-    table = scale_spread((80.0,), windows=((1, 2), (9, 10), (19, 20)))
-    growing, staying = (spread_of(table, f"ISMO, ideal switch{end}", "begin") for end in ("", ", b = 0"))
+    names = ["ISMO, ideal switch", "ISMO, ideal switch, b = 0"]
+    table = scale_spread((80.0,), windows=((1, 2), (9, 10), (19, 20)), observers=names)
+    growing, staying = (spread_of(table, name, "begin") for name in names)
     assert growing[19] > 1.8 * growing[1]
     np.testing.assert_allclose(staying, staying.mean(), rtol=0.1)
 

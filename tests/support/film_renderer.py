@@ -447,5 +447,5 @@ def quick_film(seed, folder, size=(640, 360), duration=5.0, rate=20, **others):
 
 def example_film(path):
     """Write the film that ships with the package, `percept_obs.film.example_film`, and return the truth."""
-    camera = PixelCamera((540, 540), (319.5, 179.5), (640, 360), (0.03, -0.01, 0, 0))
-    return write_film(path, scene(4, density=1200), Motion(seed=4), camera, 6, 15, Faults(noise=1.0), 4, bits=0.2)
+    camera = PixelCamera((405, 405), (239.5, 134.5), (480, 270), (0.03, -0.01, 0, 0))
+    return write_film(path, scene(4, density=1200), Motion(seed=4), camera, 6, 12, Faults(noise=1.0), 4, bits=0.35)

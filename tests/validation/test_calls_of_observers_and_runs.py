@@ -107,6 +107,7 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: chwa2019_simulation("IV.A", (0, 1)), r"expected \(\.\.\., 3\)"),
     (lambda: homography([[0, 0], [1, 0], [0, 1], [1, 1]], np.full((4, 2), 2.0)), "the same one"),
     (lambda: scale_spread(windows=[(10, 9)]), "the earlier one first"),
+    (lambda: scale_spread([60.0], windows=[(0.1, 0.2)], observers=["KF"]), "'KF' is none of the competitors"),
     (lambda: misbelieved(SEEN.motion), "none is named"),
     (lambda: po.lie_derivatives(po.PerspectiveSystem(po.affine(), po.sphere()), 4), "fewer orders"),
 )

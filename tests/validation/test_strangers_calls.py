@@ -156,7 +156,7 @@ test_they_are_refused_with_what_to_do = refuses(
     (lambda: derivation_desk(hints={"rate": 2}), 'such as "rate 6"'),
     (lambda: check(b"y1' = b1", SYSTEM), "a bytes is no formula"),
     (lambda: Board().detect(np.zeros((0, 0), np.uint8)), "picture is an array of shape"),
-    (lambda: read_film(example_film(), camera=PixelCamera((9, 9), (5, 5), (19, 10))), "the film .640, 360."),
+    (lambda: read_film(example_film(), camera=PixelCamera((9, 9), (5, 5), (19, 10))), "the film .480, 270."),
     (lambda: Footage((SEEN,), ("stereo",), render(SEEN, 2, 32), "x"), "names of their distances"),
     (lambda: affine(np.zeros((3, 3)), np.zeros(3), [0, 1, 2]), "the motion is constant"),
     (lambda: replace(scenarios.planar(), motion=affine()), "has no values for a11"),

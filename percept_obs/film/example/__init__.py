@@ -4,10 +4,10 @@ from pathlib import Path
 
 
 def example_film() -> Path:
-    """Return the path of a drawn film of the default board, 6 s of 640 x 360, with boxes and cards around it.
+    """Return the path of a drawn film of the default board, 6 s of 480 x 270, with boxes and cards around it.
 
     Beside it stands distances.csv: times in s, pixels u and v, and the true depth in m of what is seen there.  The
-    camera's focal length is 540 pixels.
+    camera's focal length is 405 pixels.
 
     See Also
     --------

@@ -11,7 +11,7 @@ import sympy as sp
 
 from percept_obs.compile import Array, Flags, Indices, vectorised
 from percept_obs.recording import Recording
-from percept_obs.recording.reckoning import point_on_rays
+from percept_obs.recording.reckoning import point_on_rays, transitions
 from percept_obs.studies.diagnosis.causes import (
     BEND,
     BIAS,
@@ -187,10 +187,8 @@ def _mount(track: Track, number: Mapping[str, Array]) -> tuple[Array, Array]:
 
 def _turn_by_vector(vector: Array) -> Array:
     """Derivative of a rotation, as a turn after it, by its rotation vector: the mean of all rotations on the way."""
-    from scipy.linalg import expm
-
-    turning = np.tensordot(vector, SPINS, axes=1)
-    return np.asarray(expm(np.block([[turning, np.eye(3)], [np.zeros((3, 6))]]))[:3, 3:])
+    turning = np.broadcast_to(np.tensordot(vector, SPINS, axes=1), (3, 3, 3))
+    return transitions(turning, np.eye(3), 1.0)[:, :, 3].T
 
 
 def _maps(track: Track, way: Path, times: Array, number: Mapping[str, Array]) -> Array:
