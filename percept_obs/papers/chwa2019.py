@@ -1,4 +1,4 @@
-"""Chwa 2019: what its equations and statements are compared with; the text says what judges compute."""
+"""Chwa 2019: what its equations and statements are compared with."""
 
 import math
 from collections.abc import Iterable
@@ -43,26 +43,19 @@ t = real("t")
 
 
 def letters(name: str) -> Matrix:
+    """A column of three letters, such as a1, a2, a3."""
     return column(*real(f"{name}1:4"))
 
 
 # Section II: relative motion.
 def in_motion() -> Values:
+    """Values of a point, its pixel and its motion in the camera's frame."""
     camera = Matrix(3, 3, lambda i, j: real(f"A_c{i + 1}{j + 1}") if i < 2 else int(j == 2))
     motion, point = SYSTEM.motion, column(*POINT)
     pixel = camera * point / (camera * point)[2]
-    return {
-        "p": pixel.applyfunc(sp.cancel),
-        "A_c": camera,
-        "m": column(*SYSTEM.surface.image, 1),
-        "mbar": point,
-        "mbar'": motion.A * point + motion.b,
-        "w_cross": motion.A,
-        "w": column(*TURNING),
-        "v_c": column(*CAMERA),
-        "v_p": column(*OBJECT),
-        "v_r": motion.b,
-    }
+    values = {"p": pixel.applyfunc(sp.cancel), "A_c": camera, "m": column(*SYSTEM.surface.image, 1), "mbar": point}
+    values |= {"mbar'": motion.A * point + motion.b, "w_cross": motion.A, "w": column(*TURNING), "v_r": motion.b}
+    return values | {"v_c": column(*CAMERA), "v_p": column(*OBJECT)}
 
 
 @cache
@@ -94,10 +87,12 @@ def from_a_patch() -> Values:
 
 
 def in_the_image(*rate: str) -> Values:
+    """Coordinates of a point's image, or their rate."""
     return {"y'": SYSTEM.rate} if rate else {"y": column(*SYSTEM.surface.image, 1 / SYSTEM.surface.distance)}
 
 
 def all_have_full_rank(p: Print) -> Told:
+    """Ranks of the three matrices at a point."""
     dynamics = scaled_dynamics()
     here = paired(OUTPUTS, (sp.Rational(2, 5), sp.Rational(1, 3), sp.Rational(1, 7)))
     ranks = [int(part.subs(here).rank()) for part in (dynamics.camera, dynamics.rotation, dynamics.object)]
@@ -106,6 +101,7 @@ def all_have_full_rank(p: Print) -> Told:
 
 
 def bounded_by_velocities(p: Print) -> Told:
+    """A static point 5 m ahead, towards which the camera moves at 1 m/s: |g| of corollary 1 with d_s = 4."""
     choice = COROLLARIES[0].choice()
     static = paired((*CAMERA, y1, y2, d_s), (0, 0, 1, 0, 0, 4))
     g_now = (choice.form.w.T * column(*choice.theta)).subs(static).subs(ybar3, 1 / (4 * (5 - t)))
@@ -142,6 +138,7 @@ def equations() -> Values:
 
 @cache
 def error_dynamics() -> Values:
+    """Rates of s_e, s and of the energies under the observer."""
     values = equations()
     sliding = values["s"].xreplace({e_sI: s_e - e_s})
     terms = {e_sI: s_e - e_s, v: s - (sliding - v)}
@@ -169,6 +166,7 @@ def rest(time: float) -> float:
 
 
 def rate_at_zero(p: Print) -> Told:
+    """Rate of s_e where s_e = s = 0: it is g, so that s_e leaves zero at once."""
     rate = error_dynamics()["s_e'"].subs({s_e: 0, s: 0})
     return vanishes(rate), (rate.subs(g, CASE_G), rest(10))
 
@@ -184,6 +182,7 @@ def attracts(p: Print) -> Told:
 
 
 def stays_outside(p: Print) -> Told:
+    """Where s_e comes to rest and the printed bound, for a g that stays: inside, at all times."""
     bound, condition = p
     pairs = [(rest(time), p.put(bound.rhs, {**GAINS, "t": time, "alpha": CASE_G / 15})) for time in (1, 10, 100)]
     outside = (condition.subs(paired((s_e, p["esbar"]), pair)) == sp.true for pair in pairs)
@@ -191,6 +190,7 @@ def stays_outside(p: Print) -> Told:
 
 
 def decreases_outside(p: Print) -> Told:
+    """(21): the bound is where the last term of (20) changes its sign."""
     bound, decrease = p
     turning = sp.tanh(p["SLOPE"] * bound.rhs).rewrite(sp.exp)
     at_the_bound = vanishes(sp.powsimp(sp.cancel(turning)) - p["alpha"])
@@ -200,11 +200,13 @@ def decreases_outside(p: Print) -> Told:
 
 
 def rests_at_what(p: Print) -> Told:
+    """Where s_e comes to rest for a g that stays: it falls as 1 / (a + b t), so its square has an integral."""
     scaled = [rest(time) * (1 + 0.1 * time) for time in (10, 100, 1000)]
     return scaled[2] < 1.1 * scaled[1] and scaled[2] < 1, scaled
 
 
 def beyond_in_each_entry(p: Print) -> Told:
+    """(21) for three entries and g = gamma / 2: all beyond the bound, where it holds; one only, where it need not."""
     at = GAINS | {t: 0, s: 0, g: GAINS[gamma] / 2}
     edge, rate, excess = sp.atanh(sp.Rational(1, 2)), error_dynamics()["Vdot"].subs(at), []
     for entries in ((1, 2, 3), (1, sp.S.Half, sp.S.Half)):
@@ -214,10 +216,12 @@ def beyond_in_each_entry(p: Print) -> Told:
 
 
 def gains() -> Values:
+    """The package's gains."""
     return dict(GAINS)
 
 
 def gains_of(p: Print) -> Told:
+    """Number of the five gains that stand in the printed (8) to (14)."""
     lines = (CHWA2019[k].printed for k in range(8, 15))
     counts = [len({k1, k2, gamma, a, b} & {s for line in each for s in line.free_symbols}) for each in lines]
     return counts[12 - 8] == 5, counts
@@ -240,18 +244,10 @@ def _case(corollary: Corollary, axes: str) -> Values:
     theta = form.w.T.adjugate() * ghat / choice.determinant
     scale = theta[0] if d_s.name in choice.unknown else dhat_s if d_s.name in choice.earlier else sp.S.One
     found = {name: theta[k] / scale for k, name in enumerate(choice.unknown) if name != d_s.name}
-    values = {
-        "ybar'": dynamics.rate.xreplace(absent | MINUS),
-        "Omega": form.phi.xreplace(MINUS),
-        "g": form.w.T * column(*choice.theta),
-        "ghat": ghat,
-        "Omega_g": Matrix.hstack(*(form.w.T[:, choice.unknown.index(name)] for name in unknown)),
-        "w": column(*TURNING),
-        "Omega2": -dynamics.rotation * column(*TURNING),
-        "e_i": sp.eye(3)[:, order[0]].as_immutable(),
-        "dhat_s": scale,
-        "yhat3": scale * ybar3,
-    }
+    values = {"ybar'": dynamics.rate.xreplace(absent | MINUS), "Omega": form.phi.xreplace(MINUS), "ghat": ghat}
+    values |= {"g": form.w.T * column(*choice.theta), "dhat_s": scale, "yhat3": scale * ybar3, "w": column(*TURNING)}
+    values |= {"Omega_g": Matrix.hstack(*(form.w.T[:, choice.unknown.index(name)] for name in unknown))}
+    values |= {"Omega2": -dynamics.rotation * column(*TURNING), "e_i": sp.eye(3)[:, order[0]].as_immutable()}
     for letter, omega, part, block in (("c", 1, CAMERA, dynamics.camera), ("p", 3, OBJECT, dynamics.object)):
         estimates = {symbol: found[symbol.name] for symbol in part if symbol.name in found}
         values |= {f"Omega{omega}": block, f"v_{letter}": column(*part).xreplace(absent)}
@@ -264,10 +260,12 @@ def _case(corollary: Corollary, axes: str) -> Values:
 
 
 def corollary(number: str) -> Corollary:
+    """The corollary of this number."""
     return COROLLARIES[int(number) - 1]
 
 
 def powers_of_ybar3(determinants: Iterable[sp.Expr]) -> Told:
+    """Return True if each determinant is ybar3^4 but for its sign, and how many there are."""
     outcomes = [sp.cancel(determinant / ybar3**4) in (1, -1) for determinant in determinants]
     return all(outcomes), {"orders of the axes": len(outcomes)}
 
@@ -305,6 +303,7 @@ def determinants(*columns: str) -> Target:
 
 
 def cells(p: Print) -> Told:
+    """Table 1: what of v_p is free in each case, and which determinants vanish where the camera stands still."""
     still = dict.fromkeys(CAMERA, sp.S.Zero)
     free = {c.section: 3 - len(c.zero) for c in COROLLARIES}
     lost = {c.section for c in COROLLARIES if vanishes(c.choice().determinant.xreplace(still))}
@@ -315,6 +314,7 @@ def cells(p: Print) -> Told:
 
 
 def one_more_dimension(p: Print) -> Told:
+    """Remark 2: unknown components of v_p for as many unknown ones of v_c, with an unknown range and a known one."""
     unknown = [corollary(number).unknown for number in "3546"]  # with an unknown range and a known one, twice
     camera, object_ = ([sum(name.startswith(letter) for name in each) for each in unknown] for letter in ("v_c", "v_p"))
     more = [object_[k + 1] - object_[k] for k in (0, 2)]
@@ -322,15 +322,18 @@ def one_more_dimension(p: Print) -> Told:
 
 
 def known_range(p: Print) -> Told:
+    """Number of the cases with a known range that estimate d_s."""
     inside = [d_s.name in c.unknown for c in COROLLARIES if c.section.startswith("VI.")]
     return all(inside), (len(inside), sum(inside))
 
 
 def does_not_turn() -> Values:
+    """What the camera's turning adds where it does not turn."""
     return {"Omega2": scaled_dynamics().rotation * sp.zeros(3, 1)}
 
 
 def three_of_seven(p: Print) -> Told:
+    """Ranks of the rate's slope in each three of d_s, v_c and v_p, the others known, at a point of no special kind."""
     rate, unknown = scaled_dynamics().rate, (d_s, *CAMERA, *OBJECT)
     here = {x: sp.Rational(sp.prime(k + 4), 7 + k) for k, x in enumerate(sorted(rate.free_symbols, key=str))}
     slope = rate.jacobian(unknown).subs(here)
@@ -348,10 +351,12 @@ def scaled_start(p: Print) -> Told:
 
 
 def begun(place: str) -> dict[str, sp.Expr]:
+    """What is printed of a start, by its letters."""
     return CHWA2019[place].printed.given
 
 
 def start_of_ghat(p: Print) -> Told:
+    """ghat(0) is no free choice: (11) with s_e(0) = v(0) = 0 gives gamma tanh(a e_s(0)), here for the simulation."""
     form, given = COROLLARIES[0].choice().form, begun("start of the simulation") | p.given
     made = ismo(form, "sign")
     state = made.equations.state
@@ -363,6 +368,7 @@ def start_of_ghat(p: Print) -> Told:
 
 
 def in_metres(p: Print) -> Told:
+    """Powers of the unit of length in the coordinates of a point."""
     unit = sp.Symbol("unit", positive=True)
     larger = {x: unit * x for x in POINT}
     coordinates = (*pinhole().image, 1 / pinhole().distance)
@@ -371,11 +377,13 @@ def in_metres(p: Print) -> Told:
 
 
 def kept_velocity(p: Print) -> Told:
+    """Section IV takes v_c of the second step from the first one; the experiment's differ."""
     change = p.given["v_c^IV.B"] - p.given["v_c^IV.A"]
     return change.is_zero_matrix, (p.given["v_p^IV.B"] - change)[:2]
 
 
 def needs_forward_motion(p: Print) -> Told:
+    """Determinants of the two cases that are left out, with v_c3 = 0: only the first one vanishes."""
     given = begun("start of the experiment")
     here = {ybar3: given["ybar_03"], d_s: given["d_s"], CAMERA[2]: 0}
     values = [COROLLARIES[number - 1].choice().determinant.subs(here) for number in (3, 5)]
@@ -388,6 +396,7 @@ SECTIONS = ("IV.A", "IV.B", "V.B", "VI.B", "VI.C")
 
 @cache
 def velocities() -> Values:
+    """Velocities of camera and object in each case of the experiment."""
     values: Values = {}
     for section in SECTIONS:
         motion, name = exactly(chwa2019_experiment(section).motion.values), section.replace(".", "")
@@ -415,11 +424,13 @@ def pixels(image: Any) -> Any:
 
 
 def sees_its_point(p: Print) -> Told:
+    """The pixel of the simulation's point at the start."""
     given = begun("start of the simulation")
     return NOT_CHECKABLE, pixels(np.array([given["y_01"], given["y_02"]], dtype=float))
 
 
 def sees_the_experiment(p: Print) -> Told:
+    """When each of the experiment's points leaves the image of the only camera that is printed."""
     times, leaves = np.arange(0, 2, 0.001), []
     for section in SECTIONS:
         outside = (pixels(chwa2019_experiment(section).coordinates(times)) >= (640, 480)).any(axis=1)
@@ -428,6 +439,7 @@ def sees_the_experiment(p: Print) -> Told:
 
 
 def robust_at(p: Print) -> Told:
+    """Noise of the printed ratio in pixels, and the spread of d_s from 9 to 10 s in IV.A with it and with more."""
     numbers = []
     clean = pixels(chwa2019_experiment("IV.A").coordinates(np.arange(0, 10, 0.01)))
     for decibels in (100, 60):
@@ -437,11 +449,13 @@ def robust_at(p: Print) -> Told:
 
 
 def found_and_true(case: str, since: float, *until: float) -> Any:
+    """Quantities of a case from a time on, as they are found and as they are."""
     setup, run = followed(case, *until)
     return (setup.choice.quantities(x[run.time >= since][:, 3:]) for x in (run.estimate, run.truth))
 
 
 def found_in_time(p: Print) -> Told:
+    """The five cases: the worst error of d_s at 1 s and of a velocity at 1.5 s, with s = 0."""
     scale, speed = [0.0], [0.0]
     for section in SECTIONS:
         found, true = found_and_true(section, 1, 2.0)
@@ -452,6 +466,7 @@ def found_in_time(p: Print) -> Told:
 
 
 def may_vary(p: Print) -> Told:
+    """Worst error of the object's velocity from 2 s on, over its largest speed, constant or varying."""
     worst = []
     for case, *until in (("IV.B", 10.0, 0.005), ("varying", 30.0, 0.01)):
         found, true = found_and_true(case, 2, *until)
@@ -462,6 +477,7 @@ def may_vary(p: Print) -> Told:
 
 
 def tends_to_g(p: Print) -> Told:
+    """Theorem 1 (iv): the largest error of ghat in IV.A, and where the object wanders, in windows that follow."""
     numbers = []
     for case, until, starts, length in (
         ("IV.A", (25.0, 0.005), (1, 5, 20), 4),
@@ -478,6 +494,7 @@ def tends_to_g(p: Print) -> Told:
 
 
 def from_any_place(p: Print) -> Told:
+    """When d_s has entered 1 % for good in IV.A, for several yhat(0), and its error at the end; s = 0."""
     times, ends = [], []
     for start in ((0.32, 0.3, 0.05), (0.0, 0.0, 0.0), (3.0, 3.0, 3.0)):
         _, run = followed("IV.A", 1.5, start=start)
@@ -488,6 +505,7 @@ def from_any_place(p: Print) -> Told:
 
 
 def errors_vanish(p: Print) -> Told:
+    """Theorem 1 (iii) in IV.A: the largest e_s and rate of e_s in 4 s from 1, 5 and 20 s on; s is 0 there."""
     _, run = followed("IV.A", 25.0, 0.005)
     windows = [(run.time >= since) & (run.time < since + 4) for since in (1, 5, 20)]
     errors = [run.recording.outputs[part] - run.state[part, :3] for part in windows]
@@ -498,6 +516,7 @@ def errors_vanish(p: Print) -> Told:
 
 
 def square_integrable(p: Print) -> Told:
+    """Theorem 1 (ii) in IV.A: the largest e_s, and the integral of its square up to 5, 10, 20 s, which levels off."""
     _, run = followed("IV.A", 25.0, 0.005)
     square = np.square(run.recording.outputs - run.state[:, :3]).sum(axis=1)
     gathered = [simpson(square[run.time <= k], dx=0.005) for k in (5, 10, 20)]
@@ -505,6 +524,7 @@ def square_integrable(p: Print) -> Told:
 
 
 def chatters(p: Print) -> Told:
+    """Spread of d_s from 1 to 2 s in IV.A, by explicit Euler with 1 ms: with the second surface, and with one only."""
     setup, run = followed("IV.A", 2.0)
     form, spreads = setup.choice.form, []
     made = ismo(form, "sign")

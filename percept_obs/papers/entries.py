@@ -100,7 +100,7 @@ class Entry:
 
     Parameters
     ----------
-    place, page, section, says, typed, compared, given, drops, expected, known, note, mends, computed, numbers, asked
+    place, page, section, says, typed, compared, given, drops, expected, known, note, mends, numbers, asked
         What the text says of it; see `CONTRIBUTING.md`.
     letters, computations, others
         Letters of the formulas, functions by their names, and the paper's entries by their places.
@@ -108,7 +108,8 @@ class Entry:
     Examples
     --------
     >>> from percept_obs.papers import MA2005
-    >>> print(MA2005["(38)"].expected, "on page", MA2005["(38)"].page)
+    >>> entry = MA2005["(38)"]
+    >>> print(entry.expected, "on page", entry.page)
     misprint on page 73
     """
 
@@ -124,7 +125,6 @@ class Entry:
     mends: tuple[str, ...] = ()
     given: tuple[str, ...] = ()
     drops: Mapping[int, str] = field(default_factory=dict)
-    computed: str = ""
     numbers: str = ""
     asked: str = ""
     letters: Letters = field(default_factory=Letters, repr=False)
@@ -250,8 +250,7 @@ class Entry:
         """Computation of the check, in a sentence."""
         if not self.calls and not self.given:
             return "Nothing is computed; the note says why."
-        said = [judge.__doc__ or "" for sign, judge, _ in self.calls if sign == "?"]
-        return self.computed or "".join(said) or EQUAL
+        return "".join(judge.__doc__ or "" for sign, judge, _ in self.calls if sign == "?") or EQUAL
 
     @property
     def parts(self) -> dict[str, str | tuple[sp.Basic, ...]]:

@@ -1,4 +1,4 @@
-"""Inaba, Abdursul and Ghosh 2005: what its statements are compared with; the text says what judges compute."""
+"""Inaba, Abdursul and Ghosh 2005: what its statements are compared with."""
 
 import math
 from collections.abc import Mapping
@@ -13,33 +13,13 @@ from numpy.linalg import inv, norm
 from scipy.integrate import cumulative_simpson, simpson
 
 from percept_obs.compile import Array
-from percept_obs.papers.base import (
-    Matrix,
-    Values,
-    column,
-    explicit,
-    filled_in,
-    is_identity,
-    matrix,
-    named,
-    paired,
-    real,
-    vanishes,
-)
+from percept_obs.papers.base import Matrix, Values, column, filled_in, matrix, named, paired, real, vanishes
 from percept_obs.papers.entries import NOT_CHECKABLE, Told
 from percept_obs.papers.letters import Print
-from percept_obs.points import (
-    LuenbergerObserver,
-    LyapunovMatrix,
-    PointsForm,
-    PointsScenario,
-    constant,
-    luenberger,
-    point_block,
-    rigid_body,
-    scheduled,
-)
+from percept_obs.points import PointsForm, PointsScenario, constant, luenberger, point_block, rigid_body, scheduled
 from percept_obs.points.gramian import gramian, linear_gramian
+from percept_obs.points.luenberger import LuenbergerObserver
+from percept_obs.points.lyapunov_matrix import LyapunovMatrix
 from percept_obs.points.manoeuvre import PATH, TURNING, Manoeuvre
 from percept_obs.points.scenarios import along_the_line_of_sight, moving_body
 from percept_obs.recording import Camera, record
@@ -48,10 +28,7 @@ from percept_obs.system.surfaces import POINT, pinhole
 from percept_obs.tracking import track
 
 BLOCK = point_block(pinhole())
-PLACES = (
-    Matrix([[2, -1, 3], [5, 4, -2], [1, 7, 6]]),
-    Matrix([[3, 2, -5], [-4, 1, 8], [6, 5, 9]]),
-)
+PLACES = Matrix([[2, -1, 3], [5, 4, -2], [1, 7, 6]]), Matrix([[3, 2, -5], [-4, 1, 8], [6, 5, 9]])
 """Places of points on a body, of which no minor vanishes by chance."""
 y_sup = sp.Symbol("y_sup", positive=True)
 t, s, tau = real("t s tau")
@@ -69,28 +46,16 @@ def known(points: str, states: str) -> Values:
     """Values where the images are letters of their own."""
     made = observer(int(points), int(states))
     form, estimate, truth = made.form, column(*made.estimate), column(*made.form.state)
-    values = {
-        "x": truth,
-        "xhat": estimate,
-        "v": form.motion.b,
-        "A": form.motion.A,
-        "C": form.stacked,
-        "B": form.B,
-        "E": form.E(made.estimate),
-        "y": column(*form.y),
-        "P^-1": made.inverse,
-        "K": made.gain,
-        "x'": form.motion.A * truth + form.motion.b,
-        "xhat'": made.flow,
-        "varphi": made.flow,
-        "r": explicit(made.gain * (column(*form.y) - form.H(made.estimate))),
-        "rho": column(*made.error),
-        "rho'": made.error_dynamics(),
-    }
+    values = {"x": truth, "xhat": estimate, "v": form.motion.b, "A": form.motion.A, "C": form.stacked, "B": form.B}
+    values |= {"E": form.E(made.estimate), "y": column(*form.y), "P^-1": made.inverse, "K": made.gain}
+    values |= {"x'": form.motion.A * truth + form.motion.b, "xhat'": made.flow, "varphi": made.flow}
+    values |= {"r": made.gain * (column(*form.y) - form.H(made.estimate))}
+    values |= {"rho": column(*made.error), "rho'": made.error_dynamics()}
     return {letter: Matrix(value) for letter, value in values.items()}
 
 
 def rays(form: PointsForm) -> Values:
+    """Images of the state's points, by their letters."""
     return paired(form.y, form.H(form.state))
 
 
@@ -119,24 +84,28 @@ def at_the_truth() -> Values:
 
 
 def no_correction(p: Print) -> Told:
+    """The package's correction where the estimate is the truth."""
     found = filled_in(p[0].lhs, p.letters.values(at_the_truth()))
     return p[0].rhs == p["O"] and p[0].lhs in (p["r"], p["-r"]) and vanishes(*found)
 
 
 def needs_no_integral(p: Print) -> Told:
+    """The package's observer: as many states as x has, and the slope of their rate in v(t), which is the identity."""
     made = observer(1, 2)
     return len(made.estimate) == 2 and made.flow.jacobian(made.form.motion.b) == sp.eye(2)
 
 
 def images_and_where(p: Print) -> Told:
+    """(2): the images are the pinhole's, and lose their meaning just where the condition is broken."""
     images, *conditions = p
     points = {p["xi"]: column(*(p[f"xi_{i}{k}"] for k in (1, 2) for i in (1, 2, 3)))}
     where = [images.rhs.xreplace({condition.lhs: condition.rhs}).has(sp.zoo) for condition in conditions]
     distances = {condition.lhs for condition in conditions if isinstance(condition, sp.Ne)}
-    return is_identity(images, points) and all(where) and len(distances) == 2
+    return Print((images,), p.letters).hold(points) and all(where) and len(distances) == 2
 
 
 def error_is_the_package_s(p: Print) -> Told:
+    """(8): with the printed error put in, the package's error dynamics are true rate less estimated rate."""
     values, made = seen("1", "2"), observer(1, 2)
     here = filled_in(p[0].rhs, p.letters.values(values))
     if here is None or p[0].lhs != p["rho"]:
@@ -147,6 +116,7 @@ def error_is_the_package_s(p: Print) -> Told:
 
 # The assumptions, and what they say about observability.
 def stable_both_ways(p: Print) -> Told:
+    """Assumption 3.1 (i) for x' = -x, which is Lyapunov stable: its transition matrix both ways in time."""
     decay = p[0].replace(p["Transition"], sp.Lambda((t, s), sp.exp(s - t))).subs(p["b"], 1)
     ways = ({t: 10, s: 0}, {t: 0, s: 10})
     return all(decay.subs(way) == sp.true for way in ways), [decay.lhs.subs(way) for way in ways]
@@ -173,6 +143,7 @@ def gathers(p: Print, what: str) -> Told:
 
 
 def not_needed(p: Print) -> Told:
+    """Remark 3.2 for x' = -x + v at rest: (14) fails along the line of sight, and the error along it decays."""
     made, point = observer(1, 2), column(1, 2)
     form = made.form
     letters = (*form.state, *made.error, *form.motion.parameters[:4], *form.stacked)
@@ -183,6 +154,7 @@ def not_needed(p: Print) -> Told:
 
 
 def information() -> Values:
+    """S and B of two points, and the characteristic polynomial of S."""
     images = [paired(BLOCK.y, real(f"y_1{k} y_2{k}")) for k in (1, 2)]
     S, B = (sp.diag(*(part.xreplace(image) for image in images)).as_immutable() for part in (BLOCK.S, BLOCK.B))
     values = {"S": S, "B": B, "det(lambda I3 - S)": (real("lambda") * sp.eye(6) - S).det(method="berkowitz")}
@@ -201,10 +173,11 @@ def eigenvalues(*edge: str) -> Values:
 
 
 def bounded_as_a_matrix(p: Print) -> Told:
+    """(1 + y_sup^2) I - S has no negative eigenvalue where |y| = y_sup, and one that is zero: no smaller bound does."""
     block = BLOCK.S.xreplace(paired(BLOCK.y, (y_sup, sp.S.Zero)))
     at = {sp.Symbol("p", integer=True, positive=True): sp.S.One}
     sides = [side.xreplace(at).xreplace({sp.MatrixSymbol("S", 3, 3): block}) for line in p for side in line.args]
-    gaps = tuple(set((explicit(sides[k + 1]) - explicit(sides[k])).eigenvals()) for k in (0, 2))
+    gaps = tuple(set((p.put(sides[k + 1], {}) - p.put(sides[k], {})).eigenvals()) for k in (0, 2))
     kinds = all(isinstance(line, sp.LessThan) for line in p)
     return kinds and gaps == ({sp.S.Zero, y_sup**2, 1 + y_sup**2}, {sp.S.Zero, sp.S.One, 1 + y_sup**2})
 
@@ -216,6 +189,7 @@ def seen_of_itself() -> Matrix:
 
 
 def in_a_cone(p: Print) -> Told:
+    """|y|^2 <= y_sup^2, multiplied by xi_3^2: the points of a cone, on both sides of the camera."""
     x = real("xi_1:4")
     image = [entry.xreplace(paired(POINT, x)) for entry in pinhole().image]
     cone = (y_sup**2 - sum(entry**2 for entry in image)) * x[2] ** 2
@@ -237,11 +211,12 @@ def error_dynamics() -> Values:
 
 
 def energy_does_not_grow(p: Print) -> Told:
+    """(15): it is what the rate of rho^T P rho has besides what is seen."""
     (line,), values = p, p.letters.values(error_dynamics())
     rho, left = values[p["rho"]], filled_in(line.lhs, values)
     if left is None or not isinstance(line, sp.LessThan) or line.rhs != p["O"]:
         return False
-    return vanishes((rho.T * left * rho)[0] - explicit(p["Vdot + 2 norm(B C rho)^2"], values))
+    return vanishes((rho.T * left * rho)[0] - p.put(p["Vdot + 2 norm(B C rho)^2"], error_dynamics()))
 
 
 def as_matrices(side: sp.Expr, values: dict[str, sp.Lambda]) -> sp.MatrixBase:
@@ -259,6 +234,7 @@ def as_matrices(side: sp.Expr, values: dict[str, sp.Lambda]) -> sp.MatrixBase:
 
 
 def variation_of_constants(p: Print) -> Told:
+    """(22) for one state whose A varies, and for two states whose A at two times do not commute."""
     if not isinstance(p[0], sp.Eq):
         return False
     for k in "12":
@@ -272,6 +248,7 @@ def variation_of_constants(p: Print) -> Told:
 
 
 def exchanged(p: Print) -> Told:
+    """(23): the exchange of integrals for |B C rho|^2 = exp(-t) and two t0, and what its bounds drop."""
     definition, swap, bound, last = p
     Q1, t0, T, seen_ = (p[name] for name in ("Q1", "t0", "T", "seen"))
     kinds = [type(line) for line in p] == [sp.Eq, sp.Eq, sp.LessThan, sp.LessThan]
@@ -349,12 +326,14 @@ def transition(A: Matrix) -> Array:
 
 
 def on_both_examples(p: Print) -> Told:
+    """(13): the largest image coordinates of both examples."""
     images = [record(scenario, 20.0, Camera(PERIOD)).outputs for scenario in map(body, (1, 2))]
     largest = [norm(of_one, axis=-1).max() for of_one in images]
     return all(p.separates("norm(y)", size, math.inf, {}) for size in largest), largest
 
 
 def exponential(p: Print) -> Told:
+    """Theorem 3.4 (ii): both examples keep the bound with an alpha just below their rate, and need its beta."""
     numbers, holds = [], True
     for scenario in map(body, (1, 2)):
         run = followed(scenario)
@@ -370,10 +349,12 @@ def exponential(p: Print) -> Told:
 
 
 def backwards() -> float:
+    """Norm of the fading point's Phi(0, t) at the end."""
     return float(norm(inv(transition(WEAKENING)[-1]), 2))
 
 
 def not_exponential(p: Print) -> Told:
+    """A = -I / (2 (1 + t)), P = (1 + t) I: all is met but the bound on Phi backwards, and the rate halves."""
     run = followed(fading(), scheduled(lambda t: 1 + t))
     least = gramian(followed(fading()).recording, WINDOW).least
     early, late = (run.decay_rate(k, 2 * k) for k in (10, 20))
@@ -385,6 +366,7 @@ def not_exponential(p: Print) -> Told:
 # The bounds of the proof.
 @cache
 def example() -> Any:
+    """The run on the stretched example."""
     return followed(stretched(), constant(UNITS**2), OFF)
 
 
@@ -413,24 +395,17 @@ def totals() -> Mapping[str, float]:
 
 @cache
 def constants() -> dict[str, sp.Float]:
+    """The example's integrals and the constants of the bounds, by their letters."""
     recording, weights = example().recording, np.linalg.eigvalsh(UNITS**2)
-    numbers = {
-        **totals(),
-        "epsilon": gramian(recording, WINDOW).least,
-        "y_sup": norm(recording.outputs, axis=-1).max(),
-        "C_norm": norm(UNITS, 2),
-        "b": np.linalg.cond(UNITS),
-        "delta": weights[0],
-        "T": WINDOW,
-        "norm(rho0)": OFF[0],
-        "norm(P0)": weights[-1],
-        "START": np.array(OFF) @ UNITS**2 @ np.array(OFF),
-        "gamma": totals()["RHO"] / OFF[0] ** 2,
-    }
+    numbers: dict[str, Any] = {**totals(), "epsilon": gramian(recording, WINDOW).least, "T": WINDOW}
+    numbers |= {"y_sup": norm(recording.outputs, axis=-1).max(), "C_norm": norm(UNITS, 2), "b": np.linalg.cond(UNITS)}
+    numbers |= {"delta": weights[0], "norm(P0)": weights[-1], "gamma": totals()["RHO"] / OFF[0] ** 2}
+    numbers |= {"norm(rho0)": OFF[0], "START": np.array(OFF) @ UNITS**2 @ np.array(OFF)}
     return {name: sp.Float(value) for name, value in numbers.items()}
 
 
 def square_integrable(p: Print) -> Told:
+    """The example meets (18) with a gamma than which none is less; where (14) fails none serves: the integral grows."""
     least = float(constants()["gamma"])
     edge = least * OFF[0] ** 2
     # For an error along a state that recedes along its ray, P = I, over |rho(t0)|^2.
@@ -442,6 +417,7 @@ def square_integrable(p: Print) -> Told:
 
 
 def split_in_two(p: Print) -> Told:
+    """The two steps to Q1 and Q2: (14), and |a + b|^2 = 2 |a|^2 + 2 |b|^2 - |a - b|^2, with the example's integrals."""
     values, epsilon = totals(), float(constants()["epsilon"])
     sides = [p.put(side, constants()) for line in p for side in line.args]
     if not all(side.is_number for side in sides) or not all(isinstance(line, sp.LessThan) for line in p):
@@ -453,6 +429,7 @@ def split_in_two(p: Print) -> Told:
 
 
 def chain(p: Print) -> Told:
+    """Each step's bound is that by the example's matrices, and the example keeps it."""
     here = {name: float(value) for name, value in constants().items()}
     of_B, of_C = 1 + here["y_sup"], norm(UNITS, 2)
     held = simpson(np.linspace(0, WINDOW, 101) ** 2, dx=WINDOW / 100)  # the time for which theta counts, squared
@@ -471,10 +448,12 @@ def chain(p: Print) -> Told:
 
 
 def gamma2_of_the_example(p: Print) -> Told:
+    """Gamma2 is what the steps of the chain make of Q2, over |rho(t0)|^2."""
     return True, [p.put(p[0].rhs, constants())]
 
 
 def from_any_start(p: Print) -> Told:
+    """The rate of Phi^T P Phi is Phi^T (A^T P + P A + P') Phi, so |P(t)| <= b^2 |P(t0)|; without b, it may grow."""
     A, P, R, F = (sp.Matrix(2, 2, sp.symbols(f"{name}1:5")) for name in "APRF")
     product = (A * F).T * P * F + F.T * P * (A * F) + F.T * R * F
     same = vanishes(*(product - F.T * (A.T * P + P * A + R) * F))
@@ -483,6 +462,7 @@ def from_any_start(p: Print) -> Told:
 
 
 def integral_is_enough(p: Print) -> Told:
+    """Decay of the rest of the integral: F' = -|rho|^2 <= -F / gamma, so F falls at least as exp(-t / gamma)."""
     run = example()
     square = run.deviation**2
     left = simpson(square, dx=PERIOD) - cumulative_simpson(square, dx=PERIOD, initial=0)
@@ -497,11 +477,13 @@ def integral_is_enough(p: Print) -> Told:
 
 # What the assumptions say about observability.
 def nothing_of_another(p: Print) -> Told:
+    """Images that two states share: what B C makes of either is 0, so (14), of the difference, leaves none."""
     least = gramian(record(moving_body(1), 16.0), 8.0).least
     return vanishes(*seen_of_itself()) and least > 0.1, [least]
 
 
 def without_input(p: Print) -> Told:
+    """With v = 0 the state is Phi x(t0), of which B C makes 0: (14) fails for any number of points."""
     numbers = []
     for count in (1, 4):
         turns, _, spin = Manoeuvre().velocities
@@ -513,6 +495,7 @@ def without_input(p: Print) -> Told:
 
 
 def not_enough(p: Print) -> Told:
+    """A point that recedes along its line of sight, A = 0: the smallest eigenvalues of both Gramians over 1 s."""
     recording = record(along_the_line_of_sight(), 2.0)
     of_points, of_images = linear_gramian(recording, 1.0).least, gramian(recording, 1.0).least
     return of_points > 0.9 and abs(of_images) < 1e-9, (of_points, of_images)

@@ -145,9 +145,9 @@ def _read(entry: dict[str, Any], line: str) -> None:
         else:
             kind = "mends" if " -> " in line else "typed"
             entry[kind] = (*entry.get(kind, ()), line.strip())
-    elif word in ("computed:", "numbers:"):
-        entry[word[:-1]] = rest
-    elif last in ("note", "computed", "numbers"):  # which may go on over several lines
+    elif word == "numbers:":
+        entry["numbers"] = rest
+    elif last in ("note", "numbers"):  # which may go on over several lines
         entry[last] += f" {line}"
     else:
         compared, verdict, note = (*line.split(" | ", 2), "", "")[:3]

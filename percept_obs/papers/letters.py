@@ -94,6 +94,9 @@ class Print(tuple[Any, ...]):
         made.letters = letters
         return made
 
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return tuple(self), self.letters
+
     def __getitem__(self, item: Any) -> Any:
         """A line by its number, or what is typed in these letters."""
         return self.letters[item] if isinstance(item, str) else super().__getitem__(item)

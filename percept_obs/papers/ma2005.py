@@ -1,4 +1,4 @@
-"""Ma, Chen and Moore 2005: what its equations and statements are compared with; the text says what judges compute."""
+"""Ma, Chen and Moore 2005: what its equations and statements are compared with."""
 
 import math
 from collections.abc import Callable
@@ -47,15 +47,18 @@ r1, r2, c = real("r1 r2 c")
 
 # The moving point, and how it is seen.
 def velocity() -> Values:
+    """Rate of the moving point."""
     return named(POINT, SPEED, "'")
 
 
 def seen(surface: str) -> Values:
+    """Image and inverse distance of a point, by the letters of the coordinates."""
     system = SYSTEMS[surface]
     return named(system.coordinates, (*system.surface.image, 1 / system.surface.distance))
 
 
 def rates(surface: str) -> Values:
+    """Rates of a surface's coordinates."""
     return named(SYSTEMS[surface].coordinates, SYSTEMS[surface].rate, "'")
 
 
@@ -80,6 +83,7 @@ def ranks(output: tuple[sp.Symbol, ...], motion: Values, here: Values) -> list[i
 
 
 def identified_together(p: Print) -> Told:
+    """The rate of y2 in a plane that the motion keeps, and the rank of y1 with two derivatives at some point of it."""
     leaves = (SPEED[1] - c * SPEED[2]).subs(Y, c * Z)
     unknown = (MOTION.A[1, 0], MOTION.A[1, 2], MOTION.b[1])
     (solution,) = sp.linsolve(sp.Poly(leaves, X, Z).coeffs(), unknown)
@@ -91,6 +95,7 @@ def identified_together(p: Print) -> Told:
 
 
 def turned_axes(p: Print) -> Told:
+    """(34): with the new coefficients the pinhole's rate is that of the chained projection."""
     if set(p.given) != {"a", "b"}:
         return False
     renamed = paired((*MOTION.A, *MOTION.b), (*p.given["a"], *p.given["b"]))
@@ -99,38 +104,28 @@ def turned_axes(p: Print) -> Told:
 
 # The observers.
 def range_terms() -> Values:
+    """What the RIO estimates: w y3, with the true y3 and with its estimate."""
     return named("f1 f2 fhat1 fhat2", (*BOTH.w.T * y3, *BOTH.w.T * hats((y3,))[0]))
 
 
 @cache
 def in_vectors(outputs: str) -> Values:
+    """The canonical form's and the IBO's letters, as columns and matrices."""
     form = FORMS[outputs]
     equations = ibo(form).equations
     k = len(form.x1)
     state, flow = column(*equations.state), column(*equations.flow).subs(sigma2, 0)
-    return {
-        "x1": column(*form.x1),
-        "x2": column(*form.x2),
-        "y": column(*(s for s in form.coordinates if s.name in form.measured)),
-        "x1'": column(*map(RATES.get, form.x1)),
-        "x2'": column(*map(RATES.get, form.x2)),
-        "w": form.w,
-        "phi": form.phi,
-        "g": form.g,
-        "ghat": form.g.xreplace(paired(form.x2, hats(form.x2))),
-        "xhat": state,
-        "xhat1": state[:k, :],
-        "xhat2": state[k:, :],
-        "xhat1'": flow[:k, :],
-        "xhat2'": flow[k:, :],
-        "xhatplus": column(*equations.reset),
-        "A": Matrix(A * sp.eye(k)),
-        "P": Matrix(P * sp.eye(k)),
-    }
+    y = (s for s in form.coordinates if s.name in form.measured)
+    values = {"x1": column(*form.x1), "x2": column(*form.x2), "y": column(*y), "w": form.w, "phi": form.phi}
+    values |= {"x1'": column(*map(RATES.get, form.x1)), "x2'": column(*map(RATES.get, form.x2)), "xhat": state}
+    values |= {"ghat": form.g.xreplace(paired(form.x2, hats(form.x2))), "xhatplus": column(*equations.reset)}
+    values |= {"xhat1": state[:k, :], "xhat2": state[k:, :], "xhat1'": flow[:k, :], "xhat2'": flow[k:, :]}
+    return values | {"g": form.g, "A": Matrix(A * sp.eye(k)), "P": Matrix(P * sp.eye(k))}
 
 
 @cache
 def in_coordinates(name: str, outputs: str) -> Values:
+    """Rates and resets of an observer's states, and the errors, entry by entry."""
     form = FORMS[outputs]
     equations = OBSERVERS[name](form).equations
     state, flow = equations.state, [entry.subs(sigma2, 0) for entry in equations.flow]
@@ -151,6 +146,7 @@ def ibo_mended(outputs: str) -> Values:
 
 
 def error_is_the_package_s(p: Print) -> Told:
+    """With the printed errors put in, the package's error dynamics are true rate less estimated rate."""
     observer = ibo(BOTH)
     rate = (column(*BOTH.rate) - column(*observer.equations.flow)).subs(sigma2, 0)
     derived = observer.error_dynamics().subs(sigma2, 0).subs({line.lhs: line.rhs for line in p}, simultaneous=True)
@@ -158,6 +154,7 @@ def error_is_the_package_s(p: Print) -> Told:
 
 
 def feeds_back(p: Print) -> Told:
+    """(11): the package's flow but for the signs of A and P, and whether Hurwitz A and P > 0 make it stable."""
     typed = [in_vectors(outputs) for outputs in ("first", "both")]
     other = [values | {name: -values[name] for name in "AP"} for values in typed]
     # The smallest case decides: n1 = n2 = 1, w = 1, phi = g = 0, A = -1, P = 1/2, so that Q = 1.
@@ -171,6 +168,7 @@ def feeds_back(p: Print) -> Told:
 
 
 def reset_condition(p: Print) -> Told:
+    """(12): the package compares the squares of both sides, neither of which is negative."""
     equations = ibo(FIRST).equations
     positive = {s: sp.Symbol(s.name, positive=True) for s in (M, gamma)}
     pairs = zip(p[0].args, equations.reset_condition.args, strict=True)
@@ -179,6 +177,7 @@ def reset_condition(p: Print) -> Told:
 
 
 def reset_leads_out(p: Print) -> Told:
+    """A reset leads out of its own condition for just the ratios that the print admits."""
     equations = ibo(FIRST).equations
     square, bound = equations.reset_condition.args
     square = sp.cancel(square.subs(paired(equations.state, equations.reset), simultaneous=True))
@@ -188,6 +187,7 @@ def reset_leads_out(p: Print) -> Told:
 
 
 def switching_term(p: Print) -> Told:
+    """Remark 1: the package's switching term, and its limit on both sides of zero."""
     left, right = p[0].args
     values = p.letters.values(in_coordinates("SMO", "first"))
     term = values[p["yhat1'"]].coeff(p["lambda1"])
@@ -198,16 +198,19 @@ def switching_term(p: Print) -> Told:
 # The appendix.
 @cache
 def of_size(n1: int, n2: int) -> Values:
+    """The appendix's letters as matrices of a size."""
     shapes = {"A P": (n1, n1), "w wbar": (n2, n1), "e1 xi1 phi x1": (n1, 1), "e2 xi2 g ghat x2": (n2, 1)}
     words = ((name, shape) for names, shape in shapes.items() for name in names.split())
     return {name: matrix(name.removesuffix("bar"), *shape) for name, shape in words}
 
 
 def of_any_size() -> list[Values]:
+    """The appendix's letters in three sizes."""
     return [of_size(1, 1), of_size(2, 1), of_size(1, 2)]
 
 
 def reduced(p: Print, A: Array, P: Array, W: Array) -> Array:
+    """Matrix of the linear error dynamics that the lines say, for these A, P and w."""
     n2, n1 = W.shape
     state = of_size(n1, n2)
     values = state | named("A P wbar", map(Matrix, (A, P, W)))
@@ -222,6 +225,7 @@ TWO = (HURWITZ, solve_continuous_lyapunov(HURWITZ.T, -np.eye(2)), np.array([[1.0
 
 
 def reduced_dynamics_are_stable(p: Print) -> Told:
+    """Eigenvalues of (38) with two pairs of a Hurwitz A and the P > 0 of its Lyapunov equation, all to the left."""
     largest = [np.linalg.eigvals(reduced(p, *case)).real.max() for case in (ONE, TWO)]
     return max(largest) < 0, largest
 
@@ -247,6 +251,7 @@ TINY = 1e-9
 
 
 def first_function(p: Print) -> Told:
+    """V1 = xi1^T P xi1 + |xi2|^2 along the mended (38), and its d1, d2, d3 for A = -1, P = 1/2, w = 1, rho = 2."""
     F, weight, fall = reduced(MA2005[38].corrected, *ONE), np.diag([0.5, 1.0]), np.diag([1.0, 0.0])
     whole = solve_continuous_lyapunov(F.T, -fall)
     gathered = whole - expm(F * 2).T @ whole @ expm(F * 2)
@@ -257,6 +262,7 @@ def first_function(p: Print) -> Told:
 
 
 def second_function(p: Print) -> Told:
+    """V2 = xi^T S xi with F^T S + S F = -I for the mended (38), xi' = F xi, with its c1 to c4."""
     S = solve_continuous_lyapunov(reduced(MA2005[38].corrected, *ONE).T, -np.eye(2))
     least, largest = np.linalg.eigvalsh(S)
     c = (least - TINY, largest + TINY, 1 - TINY, 2 * largest + TINY)
@@ -265,6 +271,7 @@ def second_function(p: Print) -> Told:
 
 
 def choice_of_gain(p: Print) -> Told:
+    """The rate of V2 along (40) with the bounds (39) and (13), and the gain at which it changes sign."""
     bound, choice = p
     # g enters (40) over G^3; (13) bounds its change by alpha0 |e2|, and e2 = G^2 xi2.
     derived = p["-c3 norm(xi)^2 + c4 norm(xi) alpha0 G^2 norm(xi) / G^3"]
@@ -278,6 +285,7 @@ lam = real("lambda")
 
 
 def smallest_form() -> CanonicalForm:
+    """A canonical form with one measured and one hidden coordinate."""
     p, q, w, phi = real("p q w phi")
     g = column(sp.Function("g", real=True)(q))
     return CanonicalForm((p,), (q,), (w, phi), (p, q), w=column(w), phi=column(phi), g=g)
@@ -309,6 +317,7 @@ def errors(form: CanonicalForm, layer: bool = False) -> Values:
 
 
 def sliding(rest: str = "") -> list[Values]:
+    """The SMO's error dynamics for all outputs; without g, if there is a rest."""
     return [errors(with_g_left_out(form) if rest else form) for form in FORMS.values()]
 
 
@@ -320,6 +329,7 @@ def with_energy(form: CanonicalForm, layer: bool = False, p: Print | None = None
 
 
 def energy_balance(p: Print) -> Told:
+    """(27): every line is the rate of the printed energy along (26)."""
     definition, *lines = p
     squares = {p["inner(e1, e1)"], p["inner(e2, e2)"]}
     if definition.lhs != p["V1"] or not definition.rhs.atoms(Inner) <= squares:
@@ -328,6 +338,7 @@ def energy_balance(p: Print) -> Told:
 
 
 def in_the_layer() -> list[Values]:
+    """(26) and its energy with the boundary layer, for either output."""
     return [with_energy(form, layer=True) for form in (FIRST, SECOND)]
 
 
@@ -344,6 +355,7 @@ def can_grow(p: Print, layer: str = "") -> Told:
 
 
 def where_g_is_the_same(p: Print) -> Told:
+    """Conditions on the coefficients of (4), with both outputs, for g not to depend on x2."""
     values = errors(BOTH)
     needed = sp.Poly((values["g"] - values["ghat"])[0], *BOTH.coordinates, *values["e2"]).coeffs()
     zero = dict.fromkeys((*MOTION.A[2, :], MOTION.b[2]), sp.S.Zero)
@@ -359,6 +371,7 @@ def on_the_surface() -> sp.Expr:
 
 
 def stable_nearby(p: Print) -> Told:
+    """(26) for n1 = n2 = 1, w = 1, alpha = 5, lambda = 1: the rate of e2 on e1 = 0, and the largest there is."""
     values, listed = errors(SMALLEST), {SMALL.w[0]: 1, alpha: 5, lam: 1}
     rate = on_the_surface().subs(listed)
     fastest = abs(values["e2'"][0].subs(listed).subs(values["e1"][0], 1))
@@ -366,6 +379,7 @@ def stable_nearby(p: Print) -> Told:
 
 
 def energy_over_a_window(p: Print) -> Told:
+    """(29): the chain along the sliding motion e1 = 0 of (26), with w = alpha = 1, over 2 s."""
     tau = real("tau")
     hidden = sp.exp(on_the_surface().subs({alpha: 1, SMALL.w[0]: 1}) * tau)
     path = {"E1": sp.S.Zero, "E2": hidden, "W": sp.S.One, "rateV": sp.diff(hidden**2 / 2, tau)}
@@ -383,6 +397,7 @@ def energy_over_a_window(p: Print) -> Told:
 
 
 def perturbed_energy(p: Print) -> Told:
+    """(31) for n1 = n2 = 1: the first line against the chain rule, the others against (30) and (13)."""
     first, second, third = p
     # (24) less (26) is the change of g, in the hidden part only.
     full, kept = errors(SMALL), errors(SMALLEST)
@@ -405,14 +420,17 @@ def perturbed_energy(p: Print) -> Told:
 
 
 def contradicts_itself(p: Print, *vanishing: str) -> bool:
+    """Return True if the lines cannot all hold where these letters are zero."""
     return bool(sp.And(*(p.put(line, dict.fromkeys(vanishing, sp.S.Zero)) for line in p)).simplify() == sp.false)
 
 
 def lyapunov_function(p: Print) -> Told:
+    """(30) and (39): strict inequalities contradict each other where all norms are zero; the rest is cited."""
     return not contradicts_itself(p, "norm(e)", "norm(dV2)", "V2'") and NOT_CHECKABLE
 
 
 def large_against_the_start(p: Print) -> Told:
+    """Rate of e1 on both sides of e1 = 0 for n1 = n2 = 1: towards it just where lambda is more than |w^T e2|."""
     values = errors(SMALL)
     (rate,), (error,), (hidden,), (w,) = values["e1'"], values["e1"], values["e2"], SMALL.w
     return vanishes(*(rate.subs(sp.sign(error), side) - w * hidden + side * lam for side in (1, -1))), (1, 10)
@@ -420,6 +438,7 @@ def large_against_the_start(p: Print) -> Told:
 
 # Assumptions, and what they say about observability.
 def lipschitz(p: Print) -> Told:
+    """(13): g is a polynomial, so its slope is bounded in a ball; the constant for (35), y1 alone."""
     if contradicts_itself(p, "norm(g - gz)", "norm(x2 - z2)"):
         return False, (0, 0)
     return True, {"alpha0 of (35)": lipschitz_constant(FIRST)}
@@ -435,6 +454,7 @@ def lipschitz_constant(form: CanonicalForm) -> float:
 
 
 def circle() -> Values:
+    """Centre and radius of the circle, if its centre is the focus of expansion."""
     centre, size = instantaneous(BOTH).circle(sp.Symbol("epsilon", positive=True))
     return named("o1 o2 r", (*centre, size)) if centre == tuple(SYSTEM.foe) else {}
 
@@ -450,6 +470,7 @@ def an_instant_suffices(p: Print, outputs: str) -> Told:
 
 
 def smallest_of_rank_one(p: Print) -> Told:
+    """(19): both matrices are right; the smallest eigenvalue of the second is 0 everywhere."""
     both, first = p
     entries = named("abar bbar", FIRST.w)
     difference = p.put(first.lhs.args[0], entries) - instantaneous(FIRST).information
@@ -460,12 +481,14 @@ def smallest_of_rank_one(p: Print) -> Told:
 
 
 def same_sums(p: Print) -> Told:
+    """Operations in the two sums of (20), and the size and rank of the matrices of (17) and (18)."""
     both, first = (line.lhs.count_ops() for line in MA2005[20].printed)
     of_first = instantaneous(FIRST)
     return both == first and not of_first.suffices and DEPENDS, (both, first, len(FIRST.x2), of_first.rank)
 
 
 def stronger_than_excitation(p: Print) -> Told:
+    """Constant w: least eigenvalues of the printed w^T w and of w w^T, which persistency of excitation gathers."""
     products = (product for w in (np.ones((2, 1)), np.ones((1, 2))) for product in (w.T @ w, w @ w.T))
     least = [round(np.linalg.eigvalsh(product)[0], 9) for product in products]
     alone, as_meant, both, excited = least
@@ -474,6 +497,7 @@ def stronger_than_excitation(p: Print) -> Told:
 
 # The examples.
 def example(number: str) -> Values:
+    """Velocity and start of an example."""
     scenario = EXAMPLES[int(number)]
     start = named("X_0 Y_0 Z_0", (sp.Rational(str(value)) for value in scenario.position))
     speed = scenario.motion.A * column(*POINT) + scenario.motion.b
@@ -481,11 +505,13 @@ def example(number: str) -> Values:
 
 
 def seen_at_the_start() -> Values:
+    """Coordinates of the point's start."""
     start = paired(POINT, real("X_0 Y_0 Z_0"))
     return named("y_01 y_02 y_03", (value.xreplace(start) for value in seen("pinhole").values()))
 
 
 def gains(name: str) -> Values:
+    """The package's gains of an observer, by their letters."""
     values = exactly(OBSERVERS[name](FIRST).gain_values)
     return dict(values) | {"delta1": values.get(delta)}
 
@@ -509,6 +535,7 @@ PERIOD = 0.01
 
 
 def on_path(scenario: Scenario, *expressions: sp.Expr) -> Array:
+    """Values of expressions along an example's path, a row each."""
     truth = scenario.coordinates(np.arange(0, scenario.duration, PERIOD))
     return np.stack(vectorised(SYSTEM.coordinates, list(expressions), scenario.motion.values)(*truth.T))
 
@@ -529,11 +556,13 @@ def one_direction_seen() -> Run:
 
 
 def unseen() -> tuple[Values, Array]:
+    """Motion in which y2 - y3 is not seen, and the error of that at start and end."""
     run = one_direction_seen()
     return exactly(run.recording.motion.values), run.error[[0, -1], 1] - run.error[[0, -1], 2]
 
 
 def excitation(p: Print) -> Told:
+    """(14): the proofs integrate |w^T e2|^2, so it bounds the matrix of that quadratic form, by a matrix."""
     gathered = p[0].lhs.function
     for form in (FIRST, BOTH):
         e2, integrand = matrix("e", len(form.x2)), p.put(gathered, {"w": form.w})
@@ -545,6 +574,7 @@ def excitation(p: Print) -> Told:
 
 
 def not_at_every_instant(p: Print) -> Told:
+    """Through the focus of expansion the printed bound fails at an instant, and every window is excited."""
     (line,) = p
     if not vanishes(line.lhs - instantaneous(BOTH).determinant):
         return False
@@ -555,6 +585,7 @@ def not_at_every_instant(p: Print) -> Told:
 
 
 def range_at_the_foe(p: Print) -> Told:
+    """Ranks for a point of (35) that passes the focus of expansion and one that stays there, and a run from there."""
     passing = exactly(EQ35.motion.values)
     motions = passing, passing | dict.fromkeys(MOTION.A, sp.S.Zero)
     foes = (paired(BOTH.x1, SYSTEM.foe.xreplace(motion)) | {y3: sp.Rational(2, 3)} for motion in motions)
@@ -565,6 +596,7 @@ def range_at_the_foe(p: Print) -> Told:
 
 
 def larger_of_rank_one(p: Print) -> Told:
+    """(20): the second sum is the larger eigenvalue; it is 2 where a direction is never seen."""
     both, first = (line.lhs for line in p)
     if not vanishes(first - instantaneous(FIRST).information.trace(), both - instantaneous(BOTH).determinant):
         return False
@@ -573,24 +605,28 @@ def larger_of_rank_one(p: Print) -> Told:
 
 
 def state_is_bounded(p: Print) -> Told:
+    """Assumption 1: the largest norms of y in 80 s of both examples."""
     bound = ibo(FIRST).gain_values[M]
     largest = [on_path(scenario, column(*SYSTEM.coordinates).norm()).max() for scenario in EXAMPLES.values()]
     return all(p.separates("norm(x)", norm, 1.01 * bound, {"M": bound}) for norm in largest), largest
 
 
 def w_is_bounded(p: Print) -> Told:
+    """Assumption 1: the largest norms of w and of its rate in 80 s of (35), y1 alone."""
     rate = FIRST.w.jacobian(SYSTEM.coordinates) * SYSTEM.rate
     largest = on_path(EQ35, FIRST.w.norm(), rate.norm()).max(axis=1)
     return np.isfinite(largest).all(), largest
 
 
 def constants_are_given(p: Print) -> Told:
+    """Return True if (35) admits it: on e1 = 0, e2' = -alpha |w|^2 e2, so (30) asks c3 / c4 <= alpha |w|^2."""
     least = (on_path(EQ35, BOTH.w.norm()) ** 2).min()
     listed, wanted = smo(BOTH).gain_values[alpha] * least, lipschitz_constant(BOTH)
     return listed > wanted or DEPENDS, (wanted, listed, wanted / least)
 
 
 def small_denominators(p: Print) -> Told:
+    """Slope of the estimate of y3 in those of f1 and f2: one over the root of the denominator, on (35) where least."""
     w1, w2 = BOTH.w
     f1, f2, yhat3 = real("f1 f2 yhat3")
     both = (f1**2 + f2**2) / (w1**2 + w2**2)
@@ -601,6 +637,7 @@ def small_denominators(p: Print) -> Told:
 
 
 def rate_is_bounded(p: Print) -> Told:
+    """Largest |e1'| = |w^T e2 - s| of the SMO in the runs on both examples, and |w| (1 + gamma) M + lambda for each."""
     found: list[float] = []
     for scenario in EXAMPLES.values():
         run = track(record(scenario, camera=Camera(PERIOD)), smo(BOTH), [0, 0, 0])
@@ -614,20 +651,24 @@ def rate_is_bounded(p: Print) -> Told:
 
 # The figures.
 def noise() -> float:
+    """The printed noise."""
     return float(MA2005["noise"].printed[0].rhs)
 
 
 def followed_by(observer: Observer, recording: Recording, **options: Any) -> Run:
+    """Run of an observer from the printed start."""
     return track(recording, observer, list(map(float, MA2005["start"].printed[0].rhs)), **options)
 
 
 @cache
 def recorded(number: int, seed: int, period: float = PERIOD) -> Recording:
+    """Recording of an example with the printed noise."""
     return record(EXAMPLES[number], camera=Camera(period, Uniform(noise())), seed=seed)
 
 
 @cache
 def followed(number: int, name: str, outputs: str, seed: int, period: float = PERIOD) -> Run:
+    """Run of an observer on an example, by its outputs."""
     return followed_by(OBSERVERS[name](OUTPUTS[outputs]), recorded(number, seed, period))
 
 
@@ -657,6 +698,7 @@ def never_reset(name: str) -> list[int]:
 
 
 def first_figure(p: Print) -> Told:
+    """Runs of both observers with y1 alone; and of the SMO where noise is drawn less often."""
     settled, _ = converge(p, "35", "IBO: y1 alone", "SMO: y1 alone")
     numbers = []
     for name in OBSERVERS:
@@ -667,12 +709,14 @@ def first_figure(p: Print) -> Told:
 
 
 def second_figure(p: Print) -> Told:
+    """Runs of the IBO with both outputs, which settle, and with y1 alone, where it depends on the noise."""
     settled, times = converge(p, "35", "IBO: y1 and y2")
     free = never_reset("IBO")
     return settled and list(map(bool, free)) == [False, True] and DEPENDS, (*times, *free)
 
 
 def similar(p: Print) -> Told:
+    """Settling times of both observers with y1 alone on (36), and their errors from 20 s on, with three seeds."""
     ibo, smo = (max(settling(36, name, "y1 alone")) for name in OBSERVERS)
     late = []
     for name in OBSERVERS:
@@ -682,17 +726,20 @@ def similar(p: Print) -> Told:
 
 
 def slower_with_one_output(p: Print) -> Told:
+    """Section 5: on (36) each observer settles later with y1 alone, with every seed."""
     times = np.array([settling(36, name, outputs) for name in OBSERVERS for outputs in OUTPUTS])
     return (times[::2] > times[1::2]).all(), times.max(axis=1)
 
 
 def estimate_is_bounded(p: Print) -> Told:
+    """The bound in the run that is reset most: y1 alone on (35)."""
     run = followed(35, "IBO", "y1 alone", 0)
     largest, resets = float(norm(run.state, axis=1).max()), len(run.resets)
     return resets and p.separates("norm(xhat)", largest, 2 * largest, run.observer.gain_values), (largest, resets)
 
 
 def resets_at_every_step(p: Print) -> Told:
+    """The share of resets that are followed by another one in the next step, for the printed ratio and for 1.01."""
     observer, step = ibo(FIRST), 0.001
     condition = observer.equations.reset_condition.subs(gamma, p[0].rhs)
     as_printed = replace(observer, equations=replace(observer.equations, reset_condition=condition))
@@ -702,6 +749,7 @@ def resets_at_every_step(p: Print) -> Told:
 
 
 def positive_definite(p: Print) -> Told:
+    """The Lyapunov equation with the listed A and P; and the signs that it asks for, put into (11) on (35)."""
     equation, positive = p
     A, P = (MA2005["IBO list"].printed.given[name] for name in "AP")
     Q = -p.put(equation.lhs, {"A1": column(A), "P1": column(P)})[0]
@@ -712,15 +760,18 @@ def positive_definite(p: Print) -> Told:
 
 # What the text says without a formula.
 def film(example: int, period: float) -> Recording:
+    """The first 20 s of an example, without noise."""
     return record(replace(EXAMPLES[example], duration=20.0), camera=Camera(period))
 
 
 def numbers_of(example: int) -> list[Array]:
+    """A and b of an example, as numbers."""
     motion = EXAMPLES[example].motion
     return [np.array(part.subs(motion.values).tolist(), dtype=float).squeeze() for part in (motion.A, motion.b)]
 
 
 def inhibits_chattering(p: Print) -> Told:
+    """Mean |e1| that is left of (26) by explicit Euler with the sign and with e1 / (|e1| + delta); slope of that."""
     left = []
     for values in (errors(SMALLEST), errors(SMALLEST, layer=True)):
         gains = {alpha: 5.0, lam: 1.0, delta: 0.2, SMALL.w[0]: 1.0}
@@ -736,6 +787,7 @@ def inhibits_chattering(p: Print) -> Told:
 
 
 def any_start_of_lambda(p: Print) -> Told:
+    """When the SMO's hidden errors have entered 0.05 on (36), y1 alone, no noise; or how often it is reset."""
     settled, last = [], []
     for first, period in ((0.01, 0.01), (10, 0.01), (100, 0.001), (100, 0.01)):
         run = track(film(36, period), smo(FIRST, switching_gain=first), [0.0] * 3)
@@ -761,6 +813,7 @@ def spread(example: int, form: CanonicalForm) -> float:
 
 
 def more_severe(p: Print) -> Told:
+    """Relative change of y3's estimate for 1 % in the motion's parameters, with one output and with both."""
     both36, one36, both35, one35 = found = [spread(k, form) for k in (36, 35) for form in (BOTH, FIRST)]
     return both36 < one36 < 1.2 * both36 and one35 > both35, found
 
@@ -782,6 +835,7 @@ def deviation(outputs: int, *normal: float) -> float:
 
 
 def third_output(p: Print) -> Told:
+    """Remark 2: Cramer-Rao bounds of the depth after 1 s of (35), 101 samples, with equal noise in each output."""
     tilted, other = (0.8, 0.5, 1.0), (-0.2, 0.0, 1.0)
     planes = ((2, 0.0, 0.0, 1.0), (2, *tilted), (3, *tilted), (2, *other), (3, *other))
     usual, two, three, _, better = found = [deviation(*each) for each in planes]
