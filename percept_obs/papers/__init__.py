@@ -1,7 +1,7 @@
 """The papers' equations as they are printed, each with a verdict that is computed.
 
-A paper is a module with its name, ``PAPER``, and its entries in ``PARTS`` that share what they run.  Its ledger has
-the module's name in capitals.
+A paper is a text, ``ma2005.md``, and a module ``ma2005.py`` with the functions that it names.  Its ledger has the name
+of the text in capitals.
 
 Examples
 --------
@@ -13,15 +13,16 @@ misprint / derived
 from __future__ import annotations
 
 import copyreg
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from difflib import get_close_matches
 from importlib import import_module
 from itertools import chain
 from multiprocessing import active_children
-from pkgutil import iter_modules
+from pathlib import Path
 from signal import SIG_IGN, SIGINT, signal
+from typing import Any
 
 from percept_obs.papers.entries import Entry, Finding, Known, Verdict
 from percept_obs.papers.ledger import Ledger, page
@@ -29,23 +30,37 @@ from percept_obs.validation import bar, checked, positive, workers
 
 __all__ = ["LEDGERS", "Entry", "Finding", "Known", "Ledger", "Verdict", "find", "judge", "page", "report"]
 
-_MODULES = [import_module(f"{__name__}.{module.name}") for module in iter_modules(__path__)]
-_PAPERS = {module.__name__.split(".")[-1]: module for module in _MODULES if hasattr(module, "PAPER")}
-NAMED = {name.upper(): Ledger(paper.PAPER, tuple(chain(*paper.PARTS))) for name, paper in _PAPERS.items()}
+
+class _Computations(dict[str, Callable[..., Any]]):
+    """Functions of a paper's module by their names, imported when one is wanted."""
+
+    def __init__(self, paper: str) -> None:
+        super().__init__()
+        self.module = f"{__name__}.{paper}"
+
+    def __missing__(self, name: str) -> Callable[..., Any]:
+        found = vars(import_module(self.module)).get(name)
+        if found is None or found.__module__ != self.module:
+            raise KeyError(name)
+        return self.setdefault(name, found)
+
+
+_TEXTS = sorted(Path(__file__).parent.glob("*.md"))
+NAMED = {path.stem.upper(): Ledger.read(path.read_text("utf-8"), _Computations(path.stem)) for path in _TEXTS}
 """Each ledger by the name under which it is imported."""
 
 LEDGERS = tuple(ledger for _, ledger in sorted(NAMED.items(), key=lambda named: named[0][-4:]))
 """One ledger a paper, the oldest first."""
 
-_PLACES = {entry: (ledger.paper, entry.place) for ledger in LEDGERS for entry in ledger.entries}
+# What checks an entry is no value, so that those of ours travel as their places.
+_PLACES = {entry: (name, entry.place) for name, ledger in NAMED.items() for entry in ledger.entries}
 copyreg.pickle(Entry, lambda entry: (_entry, _PLACES[entry]) if entry in _PLACES else entry.__reduce_ex__(2))
 
 FEW = 20
 
 
-def _entry(paper: str, place: str) -> Entry:
-    """Return an entry of ours, which travels as its place: what checks it is no value."""
-    return next(entry for entry, known in _PLACES.items() if known == (paper, place))
+def _entry(name: str, place: str) -> Entry:
+    return NAMED[name][place]
 
 
 def __getattr__(name: str) -> Ledger:
@@ -61,25 +76,19 @@ def find(places: Sequence[str | int] = (), paper: str = "") -> tuple[Ledger, ...
 
     Parameters
     ----------
-    places : sequence of str or int, optional
+    places
         Such as ``"(38)"``, ``38`` or ``"figure 3"``; all, when left out.
-    paper : str
+    paper
         A part of the authors' names or of the year; all papers, when left out.
 
     Returns
     -------
-    tuple of Ledger
-        The oldest paper first; those without such an entry are left out.
+    The oldest paper first; those without such an entry are left out.
 
     Raises
     ------
     ValueError
         If there is no such paper or no such entry; it says which there are.
-
-    See Also
-    --------
-    judge : Computes their verdicts.
-    report, page : Show them.
 
     Examples
     --------
@@ -89,7 +98,7 @@ def find(places: Sequence[str | int] = (), paper: str = "") -> tuple[Ledger, ...
     ('Ma, Chen and Moore 2005', ['(38)'])
     """
     called = {ledger: f"{name} {ledger.paper}".casefold() for name, ledger in NAMED.items()}
-    ledgers = [ledger for ledger in LEDGERS if paper.casefold() in called[ledger]]
+    ledgers = tuple(ledger for ledger in LEDGERS if paper.casefold() in called[ledger])
     if not ledgers:
         raise ValueError(f"no paper is called {paper!r}; there are {'; '.join(each.paper for each in LEDGERS)}")
     entries = [entry for ledger in ledgers for entry in ledger.entries]
@@ -98,12 +107,9 @@ def find(places: Sequence[str | int] = (), paper: str = "") -> tuple[Ledger, ...
             near = get_close_matches(str(place), {entry.place: None for entry in entries}, 5, 0.3)
             raise ValueError(f"there is no {place!r}; near to it are {', '.join(near) or 'none'}; name one as printed")
     if not places:
-        return tuple(ledgers)
-    parts = (
-        replace(ledger, entries=tuple(entry for entry in ledger.entries if any(map(entry.named, places))))
-        for ledger in ledgers
-    )
-    return tuple(part for part in parts if part.entries)
+        return ledgers
+    wanted = {ledger: tuple(e for e in ledger.entries if any(map(e.named, places))) for ledger in ledgers}
+    return tuple(replace(ledger, entries=entries) for ledger, entries in wanted.items() if entries)
 
 
 @checked
@@ -114,25 +120,19 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
 
     Parameters
     ----------
-    ledgers : sequence of Ledger
+    ledgers
         All of them, when left out.
-    processes : int, optional
+    processes
         As many as there are cores, when left out; `FEW` entries are judged in this one.
 
     Returns
     -------
-    bool
-        True if every verdict is the recorded one.
+    True if every verdict is the recorded one.
 
     Raises
     ------
     ValueError
         If there is no entry to judge, or `processes` is not positive.
-
-    See Also
-    --------
-    find : Chooses ledgers.
-    report : Tells what was found.
 
     Examples
     --------
@@ -145,9 +145,10 @@ def judge(ledgers: Sequence[Ledger] = LEDGERS, processes: int | None = None) -> 
     if not wanted:
         raise ValueError("there is no entry to judge; find(places) gives ledgers that have some")
     if len(wanted) > FEW and (processes or workers()) > 1:
-        asked = set(wanted)
-        parts = [[entry for entry in part if entry in asked] for paper in _PAPERS.values() for part in paper.PARTS]
-        others = {*active_children()}
+        shares: dict[object, list[Entry]] = {}  # of a part of a paper, whose letters and runs are the same
+        for entry in filter(_PLACES.__contains__, wanted):
+            shares.setdefault(entry.letters, []).append(entry)
+        parts, others = list(shares.values()), {*active_children()}
         with ProcessPoolExecutor(processes, initializer=signal, initargs=(SIGINT, SIG_IGN)) as pool:
             try:
                 results = bar(pool.map(_found, parts), "parts", len(parts))
@@ -171,17 +172,12 @@ def report(ledgers: Sequence[Ledger] = LEDGERS) -> str:
 
     Parameters
     ----------
-    ledgers : sequence of Ledger
+    ledgers
         All of them, when left out.
 
     Returns
     -------
-    str
-        The ledgers one below the other.
-
-    See Also
-    --------
-    page : As HTML.
+    The ledgers one below the other.
 
     Examples
     --------

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import textwrap
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
-
-import sympy as sp
+from enum import StrEnum
+from itertools import zip_longest
+from typing import TYPE_CHECKING, Any
 
 from percept_obs.papers.entries import Entry, Known, Verdict
+from percept_obs.papers.letters import Letters
 from percept_obs.papers.mathml import shown
 from percept_obs.validation import checked, load_pandas
 
@@ -29,19 +30,12 @@ class Ledger:
 
     Parameters
     ----------
-    paper : str
-        Authors and year.
-    entries : tuple of Entry
+    paper, entries
 
     Raises
     ------
     ValueError
         If two entries have the same place.
-
-    See Also
-    --------
-    find : Ledgers by paper and place.
-    Entry : One of its entries.
 
     Examples
     --------
@@ -61,20 +55,49 @@ class Ledger:
         ordered = sorted(self.entries, key=lambda e: (e.number is None, e.number or 0, int(e.page or 0)))
         object.__setattr__(self, "entries", tuple(ordered))
 
+    @classmethod
+    def read(cls, text: str, computations: Mapping[str, Callable[..., Any]]) -> Ledger:
+        """The ledger that a text says: the paper, its parts with their letters, and the entries of each.
+
+        `CONTRIBUTING.md` says how it is written.  Computations are what prints are compared with, by their names in it.
+        """
+        paper, found = "", []
+        part: dict[str, list[str]] = {}
+        entry: dict[str, Any] = {}
+        for number, line in enumerate(text.splitlines(), 1):
+            try:
+                if line.startswith("# "):
+                    paper = line[2:]
+                elif line.startswith("## "):
+                    part, entry = {"declared": [], "terms": []}, {}
+                elif line.startswith("### "):
+                    place, stands, says = line[4:].split(" | ", 2)
+                    page, section = stands.split(", ")
+                    letters = Letters(**{kind: tuple(lines) for kind, lines in part.items()})
+                    entry = {"place": place, "page": page, "section": section, "says": says, "letters": letters}
+                    found.append(entry)
+                elif line.strip() and entry:
+                    _read(entry, line)
+                elif line.strip() and part:
+                    part["terms" if line.startswith("    ") else "declared"].append(line.strip())
+            except ValueError as error:
+                like = '"### (7) | 3, II | what it says" or "= rates | misprint, derived | note"'
+                raise ValueError(f"line {number} of the ledger, {line!r}, is not {like}: {error}") from None
+        others: dict[str, Entry] = {}
+        entries = [Entry(**each, computations=computations, others=others) for each in found]
+        others |= {each.place: each for each in entries}
+        return cls(paper, tuple(entries))
+
     def __getitem__(self, place: str | int) -> Entry:
         """The entry at a place: ``"(38)"``, ``"38"``, ``38`` or ``"figure 3"``."""
-        for entry in self.entries:
-            if entry.named(place):
-                return entry
+        for entry in filter(lambda entry: entry.named(place), self.entries):
+            return entry
         raise KeyError(f"{self.paper} has no entry {place!r}; it has {', '.join(e.place for e in self.entries)}")
 
     def search(self, *words: str) -> Ledger:
         """The entries in which all of the words stand, in any column, whatever their case.
 
-        Parameters
-        ----------
-        *words : str
-            Such as ``"misprint"``, ``"seen in runs"`` or ``"chattering"``.
+        Such as ``"misprint"``, ``"seen in runs"`` or ``"chattering"``.
         """
 
         def told(entry: Entry) -> str:
@@ -93,9 +116,9 @@ class Ledger:
 
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{name}" for name in COLUMNS)
-        body = "".join(map(_html_row, self.table.itertuples(index=False, name=None)))
-        title = f"{self.paper}: {summary(entry.expected for entry in self.entries)}"
-        return f"<table><caption>{shown(title)}</caption><tr>{head}{body}</table>"
+        cells = ("".join(f"<td>{shown(cell)}" for cell in row) for row in self.table.itertuples(index=False, name=None))
+        title = f"{self.paper}: {counted(Verdict, (entry.expected for entry in self.entries))}"
+        return f"<table><caption>{shown(title)}</caption><tr>{head}<tr>{'<tr>'.join(cells)}</table>"
 
     def __str__(self) -> str:
         lines = [self.paper, "", *_row(HEAD), "-" * 120]
@@ -106,14 +129,37 @@ class Ledger:
     @property
     def counts(self) -> str:
         """Counts of the verdicts, and of the ways in which they are known."""
-        found = summary(entry.finding.verdict for entry in self.entries)
-        return f"{found}\n{known_how(self.entries)}"
+        verdicts, ways = ((e.finding.verdict for e in self.entries), (e.known for e in self.entries))
+        return f"{counted(Verdict, verdicts)}\n{counted(Known, ways)}"
 
 
-def summary(verdicts: Iterable[Verdict]) -> str:
-    """Counts of the verdicts, in one line."""
-    counts = Counter(verdicts)
-    return ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict)
+def _read(entry: dict[str, Any], line: str) -> None:
+    """Add a line to an entry: a formula or what belongs to it, or what it is compared with, verdict and note."""
+    word, _, rest = line.strip().partition(" ")
+    last = next(reversed(entry))
+    if line.startswith("    "):
+        if word == "drops":
+            entry["drops"] = {**entry.get("drops", {}), len(entry["typed"]) - 1: rest}
+        elif word in ("asks", "given"):
+            entry |= {"asked": rest} if word == "asks" else {"given": tuple(rest.split("; "))}
+        else:
+            kind = "mends" if " -> " in line else "typed"
+            entry[kind] = (*entry.get(kind, ()), line.strip())
+    elif word == "numbers:":
+        entry["numbers"] = rest
+    elif last in ("note", "numbers"):  # which may go on over several lines
+        entry[last] += f" {line}"
+    else:
+        compared, verdict, note = (*line.split(" | ", 2), "", "")[:3]
+        verdict, _, known = verdict.partition(", ")
+        entry |= {"compared": "" if compared == "nothing" else compared, "expected": Verdict(verdict or "holds")}
+        entry |= {"known": Known(known or "derived"), "note": note}
+
+
+def counted(kinds: Iterable[StrEnum], found: Iterable[StrEnum]) -> str:
+    """How many there are of each kind, in one line."""
+    counts = Counter(found)
+    return ", ".join(f"{counts[kind]} {kind}" for kind in kinds)
 
 
 @checked
@@ -122,16 +168,11 @@ def page(ledgers: Sequence[Ledger]) -> str:
 
     Parameters
     ----------
-    ledgers : sequence of Ledger
+    ledgers
 
     Returns
     -------
-    str
-        The whole page.
-
-    See Also
-    --------
-    report : As text.
+    The whole page.
 
     Examples
     --------
@@ -151,21 +192,6 @@ def page(ledgers: Sequence[Ledger]) -> str:
     )
 
 
-def _html_row(cells: Iterable[str | tuple[sp.Basic, ...]]) -> str:
-    return "<tr>" + "".join(f"<td>{shown(cell)}" for cell in cells)
-
-
-def known_how(entries: Iterable[Entry]) -> str:
-    """Counts of the ways in which verdicts are known, in one line."""
-    counts = Counter(entry.known for entry in entries)
-    return ", ".join(f"{counts[known]} {known}" for known in Known)
-
-
 def _row(cells: Iterable[str]) -> list[str]:
-    columns = [textwrap.wrap(cell, width) or [""] for cell, width in zip(cells, WIDTHS, strict=True)]
-    height = max(map(len, columns))
-    filled = [column + [""] * (height - len(column)) for column in columns]
-    return [
-        " ".join(part.ljust(width) for part, width in zip(line, WIDTHS, strict=True)).rstrip()
-        for line in zip(*filled, strict=True)
-    ]
+    columns = (textwrap.wrap(cell, width) or [""] for cell, width in zip(cells, WIDTHS, strict=True))
+    return [" ".join(map(str.ljust, line, WIDTHS)).rstrip() for line in zip_longest(*columns, fillvalue="")]

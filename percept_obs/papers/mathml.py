@@ -1,7 +1,5 @@
 """Formulas as MathML, which a browser shows without help: in a notebook, and in a file."""
 
-from __future__ import annotations
-
 import re
 from html import escape
 
@@ -35,13 +33,7 @@ def shown(part: str | tuple[sp.Basic, ...]) -> str:
 
 
 def markup(formula: sp.Basic) -> str:
-    """MathML of a formula, with its accents.
-
-    Examples
-    --------
-    >>> markup(sp.Symbol("xhat"))
-    '<mover accent="true"><mi>x</mi><mo>^</mo></mover>'
-    """
+    """MathML of a formula, with its accents."""
     text = re.sub(r"<mi>(\w+)</mi>", lambda found: _letter(found[1]), _plain(formula))
     for found, better in BETTER:
         text = text.replace(found, better)

@@ -1,6 +1,7 @@
 """Slips are found in every place of a formula, and what they make is told from what it says."""
 
 from collections import Counter
+from copy import copy
 
 import pytest
 import sympy as sp
@@ -8,8 +9,20 @@ from ledger_mutations import say_the_same, slips
 
 from percept_obs.checking.places import at, put
 from percept_obs.checking.slips import MISTAKES, siblings_in, slips_in, symbols_in
-from percept_obs.papers import base
-from percept_obs.papers.base import dot, equal
+from percept_obs.papers.base import column, is_identity, vanishes
+from percept_obs.papers.letters import Letters, Print
+
+
+def equal(left, right):
+    return sp.Eq(left, right, evaluate=False)
+
+
+def less(left, right):
+    return sp.StrictLessThan(left, right, evaluate=False)
+
+
+def at_most(left, right):
+    return sp.LessThan(left, right, evaluate=False)
 
 
 def test_slips_are_signs_factors_and_siblings():
@@ -55,41 +68,43 @@ def test_slips_enter_matrices_vectors_and_branches():
 def test_what_says_the_same_is_told_from_what_does_not():
     a, b = sp.symbols("a b", real=True)
     v = sp.MatrixSymbol("v", 3, 1)
-    nothing = base.column(0, 0, 0)
+    nothing = column(0, 0, 0)
     assert say_the_same((equal(a, b + 1),), (equal(-a, -b - 1),))
-    assert say_the_same((base.less(a, 0),), (base.less(2 * a, 0),))
+    assert say_the_same((less(a, 0),), (less(2 * a, 0),))
     assert say_the_same((equal(a, a),), (equal(a, b),))
     assert say_the_same((equal(-v, nothing),), (equal(v, nothing),))
-    assert say_the_same((base.less(2 * a, sp.oo),), (base.less(a, sp.oo),))
+    assert say_the_same((less(2 * a, sp.oo),), (less(a, sp.oo),))
     assert not say_the_same((equal(2 * a, b),), (equal(a, b),))
-    assert not say_the_same((base.less(-a, 0),), (base.less(a, 0),))
-    assert not say_the_same((base.less(-a, sp.oo),), (base.less(a, sp.oo),))
-    assert not say_the_same((base.at_most(a, b),), (equal(a, b),))
+    assert not say_the_same((less(-a, 0),), (less(a, 0),))
+    assert not say_the_same((less(-a, sp.oo),), (less(a, sp.oo),))
+    assert not say_the_same((at_most(a, b),), (equal(a, b),))
 
 
 @pytest.mark.parametrize("twist", [sp.S.One, -sp.S.One])
 def test_zero_is_told_from_nearly_zero(twist):
     a, b = sp.symbols("a b", real=True)
-    assert base.vanishes((a + b) ** 2 - a**2 - 2 * a * b - b**2)
-    assert base.vanishes(1 / a + 1 / b - (a + b) / (a * b))
-    assert not base.vanishes((a + b) ** 2 - a**2 - 2 * a * b - b**2 + twist * sp.Rational(1, 10**12) * a)
+    assert vanishes((a + b) ** 2 - a**2 - 2 * a * b - b**2)
+    assert vanishes(1 / a + 1 / b - (a + b) / (a * b))
+    assert not vanishes((a + b) ** 2 - a**2 - 2 * a * b - b**2 + twist * sp.Rational(1, 10**12) * a)
 
 
 def test_an_equation_with_an_unknown_letter_is_no_identity():
-    n = sp.Symbol("n", integer=True, positive=True)
-    (x, z), a = base.vectors("x z", n), sp.Symbol("a", real=True)
-    known = {x: base.column(a), dot(x): base.column(a)}
-    assert base.is_identity(equal(dot(x), x), known)
-    assert not base.is_identity(equal(dot(x), z), known)
-    assert not base.is_identity(equal(dot(x), x), known | {x: base.column(a, a)})
-    assert not base.is_identity(base.at_most(a, a), known)
+    letters = Letters(("n: x z",))
+    known = letters.values({"x": column(sp.Symbol("a")), "x'": column(sp.Symbol("a"))})
+    (right,), (unknown,), (bound,) = map(letters.read, ("x' = x", "x' = z", "x' <= x"))
+    assert is_identity(right, known)
+    assert is_identity(bound, known)
+    assert not is_identity(unknown, known)
+    assert not is_identity(right, known | {letters["x"]: column(1, 1)})
+    assert not is_identity(right, known, sp.S.One)
 
 
 def test_a_printed_bound_must_admit_and_exclude():
-    x, M = sp.symbols("x M", real=True)
-    assert base.separates(base.at_most(x, M), x, 1, 3, {M: sp.Integer(2)})
-    assert not base.separates(base.at_most(-x, M), x, 1, 3, {M: sp.Integer(2)})
-    assert not base.separates(base.at_most(x, M), x, 1, 3, {})
+    letters = Letters()
+    bound = Print(letters.read("x <= M"), letters)
+    assert copy(bound).separates("x", 1, 3, {"M": 2})
+    assert not Print(letters.read("-x <= M"), letters).separates("x", 1, 3, {"M": 2})
+    assert not bound.separates("x", 1, 3, {})
 
 
 def test_a_slip_knows_its_place_its_kind_and_its_term():

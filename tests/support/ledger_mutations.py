@@ -3,7 +3,7 @@
 import sympy as sp
 
 from percept_obs.checking.slips import Moves, siblings_in, slips_in
-from percept_obs.papers import base
+from percept_obs.papers.base import is_identity
 
 PRINTS = Moves((-sp.S.One, sp.Integer(2)))
 """Slips in a printed formula."""
@@ -34,7 +34,9 @@ def _same(one: sp.Basic, other: sp.Basic) -> bool:
     endless = one.rhs == other.rhs == sp.oo
     left, right = (relation.lhs if endless else relation.lhs - relation.rhs for relation in (one, other))
     return any(
-        gap == 0 or getattr(gap, "is_ZeroMatrix", False) or base.is_identity(base.equal(right, factor * left), entries)
+        gap == 0
+        or getattr(gap, "is_ZeroMatrix", False)
+        or is_identity(sp.Eq(right, factor * left, evaluate=False), entries)
         for factor in factors
         for gap in [sp.expand(right - factor * left).doit()]
     )
