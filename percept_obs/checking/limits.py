@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import _thread
 import ctypes
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -92,7 +93,7 @@ class _Watch:
         own = getattr(time, "pthread_getcpuclockid", None)  # other systems cannot read the clock of another thread
         self.clock = own(self.thread) if own else None
         self.end = self.until = self.now() + seconds
-        self.alone = False
+        self.alone, self.report = False, sys.unraisablehook
 
     def now(self) -> float:
         """Return the seconds that the thread has computed, or else the process."""
@@ -104,7 +105,9 @@ class _Watch:
         return self.now() > self.end
 
     def start(self) -> None:
-        """Begin to watch."""
+        """Begin to watch; where the end cannot be raised, as while a generator closes, it comes again, and unreported."""
+        self.report = report = sys.unraisablehook
+        sys.unraisablehook = lambda error: None if error.exc_type is _Over else report(error)
         try:
             _thread.start_new_thread(self.wait, ())
         except RuntimeError:  # no thread can be started
@@ -118,6 +121,7 @@ class _Watch:
         if self.running.locked():
             self.running.release()
         _limits_of_thread.watch = None
+        sys.unraisablehook = self.report
 
     def wait(self) -> None:
         """Wait for the end, in a thread of its own."""

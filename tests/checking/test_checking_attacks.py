@@ -1,5 +1,6 @@
 """Nothing that is nearly the same is called right, and no text takes longer than two seconds of computing."""
 
+import sys
 import time
 
 import pytest
@@ -11,7 +12,7 @@ from sample_sizes import sampled
 from percept_obs import check
 from percept_obs.checking import limits, target_of
 from percept_obs.checking.deciding import decided
-from percept_obs.checking.limits import SECONDS, TooLong, limited
+from percept_obs.checking.limits import SECONDS, TooLong, _Over, limited
 
 x, y = sp.symbols("y1 y2", real=True)
 
@@ -105,6 +106,19 @@ def test_what_never_ends_is_stopped_in_words(monkeypatch):
     with pytest.raises(TooLong):
         limited(lambda: limited(forever), 0.05)
     assert limited(lambda: limited(lambda: 3)) == 3
+
+
+@pytest.mark.parametrize(("error", "reported"), [(_Over, 0), (ArithmeticError, 1)])
+def test_the_end_is_not_reported_where_it_cannot_be_raised_and_other_errors_are(error, reported, monkeypatch):
+    class Closing:
+        def __del__(self):
+            raise error
+
+    found = []
+    monkeypatch.setattr(sys, "unraisablehook", found.append)
+    limited(lambda: Closing() and None)
+    assert len(found) == reported
+    assert sys.unraisablehook == found.append
 
 
 def test_what_never_ends_is_stopped_where_there_are_no_threads(monkeypatch):
