@@ -105,7 +105,7 @@ class _Watch:
         return self.now() > self.end
 
     def start(self) -> None:
-        """Begin to watch; where the end cannot be raised, as while a generator closes, it comes again, and unreported."""
+        """Begin to watch; an end that cannot be raised, as while a generator closes, comes again, and unreported."""
         self.report = report = sys.unraisablehook
         sys.unraisablehook = lambda error: None if error.exc_type is _Over else report(error)
         try:
