@@ -11,6 +11,7 @@ from examples import BOTH, FORMS, MOTIONS, ONE, OTHER, SQUARE, SURFACES, ZERO
 from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from sample_sizes import across
 
 from percept_obs import (
     Camera,
@@ -123,10 +124,9 @@ def test_started_at_the_truth_it_stays_there(name, form, scenario):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("make", COPIES, ids=lambda make: make.key)
-@pytest.mark.parametrize(("surface", "outputs"), SEEN)
-def test_started_at_the_truth_it_stays_there_on_every_surface(make, surface, outputs):
-    form = partitioned(surface, outputs)
+@pytest.mark.parametrize(("make", "seen"), across(COPIES, SEEN), ids=lambda case: getattr(case, "key", None))
+def test_started_at_the_truth_it_stays_there_on_every_surface(make, seen):
+    form = partitioned(*seen)
     if make.refusal(form):
         with pytest.raises((NotAffine, NotIntegrable, NeedsMotion, NeedsMoreOutputs)):
             make(form)
