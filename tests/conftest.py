@@ -64,8 +64,8 @@ APART = (
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers(config):
-    """Two processes more than processors, for tests of pages wait for their browser."""
-    return (os.cpu_count() or 1) + 2
+    """One process more than processors, for tests of pages wait for their browser, which computes while it is asked."""
+    return (os.cpu_count() or 1) + 1
 
 
 @pytest.hookimpl(optionalhook=True)

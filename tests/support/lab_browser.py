@@ -30,7 +30,7 @@ def keep(change):
 lab.observe(keep, "analysis")
 lab
 """
-EVENTS = sampled(60, 10_000)
+EVENTS = sampled(100, 10_000)
 """Random events in each lab, about one for each control."""
 
 
